@@ -1,0 +1,94 @@
+//! How grains fly between events.
+
+use crate::particle::{Mode, ParticleId, Vector};
+use crate::time::Time;
+
+/// What the engine knows of a grain at the instant its flight starts.
+#[derive(Clone, Copy, Debug)]
+pub struct Motion<const D: usize> {
+    /// Which grain; prescribed paths of fixed grains may depend on it.
+    pub id: ParticleId,
+    /// Centre, in d.
+    pub position: Vector<D>,
+    /// Velocity, in √(gd).
+    pub velocity: Vector<D>,
+    /// The dynamics it follows.
+    pub mode: Mode,
+}
+
+/// The way out of a slab `low ≤ x ≤ high`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Exit {
+    /// How long after the start of the flight, in √(d/g).
+    pub after: f64,
+    /// Out through the upper face.
+    pub upward: bool,
+}
+
+/// The free motion of one grain from a given instant on.
+///
+/// Times are counted from the start of the flight, in √(d/g).
+pub trait Flight<const D: usize>: Copy {
+    /// Centre `after` the start, in d.
+    fn position(&self, after: f64) -> Vector<D>;
+
+    /// Velocity `after` the start, in √(gd).
+    fn velocity(&self, after: f64) -> Vector<D>;
+
+    /// The same motion counted from `after` its start.
+    fn advanced(&self, after: f64) -> Self;
+
+    /// When, not before `from`, the grain leaves `low ≤ x[axis] ≤ high`
+    /// outwards; `None` if never. A grain that is already outside and moving
+    /// outwards leaves at `from`; one that is outside by rounding and moving
+    /// inwards is inside.
+    fn exit(&self, axis: usize, low: f64, high: f64, from: f64) -> Option<Exit>;
+
+    /// A bound on the speed during the first `within`, in √(gd).
+    fn speed_bound(&self, within: f64) -> f64;
+
+    /// True if the grain does not move at all: the engine then owes it no cell
+    /// crossings.
+    fn is_at_rest(&self) -> bool;
+}
+
+/// A flight whose position is a polynomial of time, of degree two at most.
+pub trait PolynomialFlight<const D: usize>: Flight<D> {
+    /// False if the acceleration is zero for every flight of this type; nothing
+    /// is then computed for it.
+    const ACCELERATES: bool;
+
+    /// The constant acceleration, in g.
+    fn acceleration(&self) -> Vector<D>;
+}
+
+/// How grains fly: the equation of motion between collisions.
+///
+/// The generic type names are: `D` the dimension.
+pub trait Dynamics<const D: usize> {
+    /// The motion of one grain up to its next event.
+    type Flight: Flight<D>;
+
+    /// Whether diameters change in time. If false (the default)
+    /// [`growth_rate`](Dynamics::growth_rate) is never asked and costs nothing.
+    const GROWS: bool = false;
+
+    /// The motion from `since` on of a grain that is as `motion` says.
+    fn flight(&self, motion: &Motion<D>, since: Time) -> Self::Flight;
+
+    /// The acceleration of gravity at `time`, in g; "down" for sleep criteria.
+    fn gravity(&self, time: Time) -> Vector<D>;
+
+    /// The velocity of what counts as being at rest at `position`, in √(gd):
+    /// frozen grains have it, and thresholds are relative to it.
+    fn ground_velocity(&self, _position: &Vector<D>, _time: Time) -> Vector<D> {
+        Vector::zeros()
+    }
+
+    /// Growth of every diameter per unit of time, as a fraction of the
+    /// diameter at t = 0: σ(t) = σ(0) (1 + rate·t). Lubachevsky & Stillinger
+    /// 1990, doi:10.1007/BF01025983.
+    fn growth_rate(&self) -> f64 {
+        0.0
+    }
+}
