@@ -1,9 +1,13 @@
 //! grainfall
 
+pub mod boundary;
+pub mod collide;
 pub mod dynamics;
+pub mod error;
 pub mod model;
 pub mod particle;
 pub mod time;
 
+pub use error::SetupError;
 pub use particle::{Mode, Particle, ParticleId, Vector, WallId};
 pub use time::Time;

@@ -41,7 +41,7 @@ impl<const D: usize> Flight<D> for Straight<D> {
 
     #[inline]
     fn is_at_rest(&self) -> bool {
-        self.velocity == Vector::zeros()
+        self.velocity == Vector::<D>::zeros()
     }
 }
 
@@ -50,7 +50,7 @@ impl<const D: usize> PolynomialFlight<D> for Straight<D> {
 
     #[inline]
     fn acceleration(&self) -> Vector<D> {
-        Vector::zeros()
+        Vector::<D>::zeros()
     }
 }
 
@@ -113,7 +113,7 @@ impl<const D: usize> Flight<D> for Parabola<D> {
 
     #[inline]
     fn is_at_rest(&self) -> bool {
-        self.velocity == Vector::zeros() && self.acceleration == Vector::zeros()
+        self.velocity == Vector::<D>::zeros() && self.acceleration == Vector::<D>::zeros()
     }
 }
 
