@@ -3,9 +3,12 @@
 pub mod boundary;
 pub mod collide;
 pub mod dynamics;
+pub mod engine;
 pub mod error;
 pub mod model;
+pub mod observe;
 pub mod particle;
+pub mod policy;
 pub mod time;
 
 pub use error::SetupError;

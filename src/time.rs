@@ -56,6 +56,12 @@ impl Time {
         rest: 0.0,
     };
 
+    /// The earliest instant that can be named, about -8.59·10⁹.
+    pub const FIRST: Time = Time {
+        ticks: i64::MIN,
+        rest: 0.0,
+    };
+
     /// The instant `units` √(d/g) from the start of the clock.
     #[must_use]
     pub fn from_units(units: f64) -> Self {

@@ -61,7 +61,8 @@ pub struct Occurrence<const D: usize> {
     pub other_velocity: Vector<D>,
     /// Made elastic by a cut-off.
     pub elastic: bool,
-    /// Why a grain fell asleep or woke.
+    /// Why a grain woke, falls asleep, or will do so on its way to its next
+    /// collision.
     pub reason: Option<Reason>,
 }
 

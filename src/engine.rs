@@ -1,0 +1,23 @@
+//! The engine: it carries grains from event to event.
+//!
+//! It knows a model by [`Model`](crate::model::Model) alone and no
+//! implementation of its parts.
+
+mod body;
+mod cells;
+mod collisions;
+mod cone;
+mod counts;
+mod events;
+mod guards;
+mod queue;
+mod search;
+mod settings;
+mod setup;
+mod simulation;
+mod transitions;
+mod view;
+
+pub use counts::{Counts, ModeCounts};
+pub use settings::{Collapse, Guards, Limits, Settings, StopReason};
+pub use simulation::Simulation;

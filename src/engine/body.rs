@@ -1,0 +1,127 @@
+//! What the engine stores of grains, and where they are now.
+
+use crate::engine::cells::Cells;
+use crate::engine::counts::ModeCounts;
+use crate::model::{Boundary, Dynamics, Flight, Model, Motion, FlightOf};
+use crate::particle::{Mode, Particle, ParticleId, Vector};
+use crate::time::Time;
+
+/// The state of a grain at its last event.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Body<const D: usize> {
+    pub(super) position: Vector<D>,
+    pub(super) velocity: Vector<D>,
+    /// The instant of that event.
+    pub(super) since: Time,
+    /// Radius at t = 0, in d.
+    pub(super) radius: f64,
+    pub(super) mode: Mode,
+    /// Counts the changes of this state, so that events foreseen before the
+    /// last one can be told.
+    pub(super) stamp: u32,
+}
+
+/// All grains, the grid and the clock.
+#[derive(Clone, Debug)]
+pub(super) struct World<const D: usize> {
+    pub(super) bodies: Vec<Body<D>>,
+    pub(super) masses: Vec<f64>,
+    pub(super) cells: Cells<D>,
+    pub(super) clock: Time,
+    pub(super) modes: ModeCounts,
+    /// Largest diameter at t = 0, in d.
+    pub(super) largest: f64,
+}
+
+impl<const D: usize> World<D> {
+    /// The flight of a grain from its last event on.
+    #[inline]
+    pub(super) fn flight<M: Model<D>>(&self, model: &M, particle: u32) -> FlightOf<M, D> {
+        let body = &self.bodies[particle as usize];
+        flight_of(model, particle, body)
+    }
+
+    /// A grain at the instant the clock shows, in the image it is stored in.
+    pub(super) fn particle_now<M: Model<D>>(&self, model: &M, particle: u32) -> Particle<D> {
+        let body = &self.bodies[particle as usize];
+        let flight = flight_of(model, particle, body);
+        let after = self.clock - body.since;
+        Particle {
+            position: flight.position(after),
+            velocity: flight.velocity(after),
+            diameter: 2.0 * body.radius * scale_at::<M, D>(model, self.clock),
+            mass: self.masses[particle as usize],
+            mode: body.mode,
+        }
+    }
+
+    /// Writes a grain's state at the instant the clock shows. Only physical
+    /// events do so.
+    pub(super) fn write<M: Model<D>>(
+        &mut self,
+        model: &M,
+        particle: u32,
+        position: Vector<D>,
+        velocity: Vector<D>,
+        mode: Mode,
+    ) {
+        let body = &mut self.bodies[particle as usize];
+        body.position = position;
+        body.velocity = velocity;
+        body.since = self.clock;
+        body.stamp = body.stamp.wrapping_add(1);
+        if body.mode != mode {
+            *self.modes.of(body.mode) -= 1;
+            *self.modes.of(mode) += 1;
+            body.mode = mode;
+        }
+        for axis in 0..D {
+            let Some(period) = model.boundary().period(axis) else {
+                continue;
+            };
+            let x = body.position[axis];
+            if x < period.origin || x >= period.origin + period.length {
+                let turns = libm::floor((x - period.origin) / period.length);
+                body.position[axis] = x - turns * period.length;
+                self.cells.unwind(particle, axis, turns as i32);
+            }
+        }
+    }
+
+    /// From one grain to the nearest image of another, now.
+    pub(super) fn displacement<M: Model<D>>(
+        &self,
+        model: &M,
+        from: &Particle<D>,
+        to: &Particle<D>,
+    ) -> Vector<D> {
+        model.boundary().displacement(&from.position, &to.position)
+    }
+}
+
+#[inline]
+pub(super) fn flight_of<M: Model<D>, const D: usize>(
+    model: &M,
+    particle: u32,
+    body: &Body<D>,
+) -> FlightOf<M, D> {
+    model.dynamics().flight(
+        &Motion {
+            id: ParticleId(particle),
+            position: body.position,
+            velocity: body.velocity,
+            mode: body.mode,
+        },
+        body.since,
+    )
+}
+
+/// Diameters at `time` over those at t = 0.
+#[inline]
+pub(super) fn scale_at<M: Model<D>, const D: usize>(model: &M, time: Time) -> f64 {
+    if M::Dynamics::GROWS {
+        1.0 + model.dynamics().growth_rate() * time.units()
+    } else {
+        1.0
+    }
+}

@@ -1,0 +1,308 @@
+//! The cell grid: which grains may be near which.
+//!
+//! A grain belongs to a cell from one transfer event to the next, whatever
+//! rounding says of its position. Cell coordinates are not wrapped while a
+//! grain flies on through a periodic face, so that the image of a neighbour is
+//! known exactly: it is the one whose cell lies next to the grain's own.
+//! Outermost cells of axes that are not periodic reach to infinity.
+
+use crate::model::{Boundary, Period};
+use crate::particle::Vector;
+
+const NONE: u32 = u32::MAX;
+
+/// Edges are longer than the largest contact distance by this factor, which
+/// covers the rounding of transfer times.
+const SLACK: f64 = 1.0 + 1.0e-9;
+
+/// Cells of an axis.
+#[derive(Clone, Copy, Debug)]
+struct Axis {
+    origin: f64,
+    edge: f64,
+    count: i32,
+    stride: usize,
+    period: Option<Period>,
+}
+
+/// A grain's place in the grid and in its cell's list.
+#[derive(Clone, Copy, Debug)]
+struct Seat<const D: usize> {
+    cell: [i32; D],
+    next: u32,
+    previous: u32,
+}
+
+/// The grid and who is where.
+#[derive(Clone, Debug)]
+pub(super) struct Cells<const D: usize> {
+    axes: [Axis; D],
+    heads: Vec<u32>,
+    seats: Vec<Seat<D>>,
+}
+
+/// A grain found next to another, with the number of periods to add to its
+/// position along each axis.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Found<const D: usize> {
+    pub(super) particle: u32,
+    pub(super) turns: [i32; D],
+}
+
+impl<const D: usize> Cells<D> {
+    /// A grid for grains at these positions whose centres touch at no more than
+    /// `reach`.
+    pub(super) fn new<B: Boundary<D>>(boundary: &B, positions: &[Vector<D>], reach: f64) -> Self {
+        let mut low = [0.0; D];
+        let mut span = [0.0; D];
+        for axis in 0..D {
+            if let Some(period) = boundary.period(axis) {
+                low[axis] = period.origin;
+                span[axis] = period.length;
+            } else {
+                let along = positions.iter().map(|position| position[axis]);
+                let least = along.clone().fold(f64::INFINITY, f64::min);
+                let most = along.fold(f64::NEG_INFINITY, f64::max);
+                low[axis] = if least.is_finite() { least - 0.5 * reach } else { 0.0 };
+                span[axis] = if least.is_finite() { most - least + reach } else { reach };
+            }
+        }
+        // Not many more cells than grains, however thin the gas.
+        let most_cells = 16.0 * positions.len() as f64 + 4096.0;
+        let mut edge = reach * SLACK;
+        let cells_of = |edge: f64, axis: usize| (span[axis] / edge).floor().clamp(1.0, 1.0e9);
+        while (0..D).map(|axis| cells_of(edge, axis)).product::<f64>() > most_cells {
+            edge *= 1.1;
+        }
+        let mut stride = 1;
+        let axes = std::array::from_fn(|axis| {
+            let count = cells_of(edge, axis) as i32;
+            let period = boundary.period(axis);
+            let fitting = span[axis] / f64::from(count);
+            let this = Axis {
+                origin: low[axis],
+                // The cells of a period must fit exactly.
+                edge: if period.is_some() { fitting } else { fitting.max(edge) },
+                count,
+                stride,
+                period,
+            };
+            stride *= count as usize;
+            this
+        });
+        let mut cells = Cells {
+            axes,
+            heads: vec![NONE; stride],
+            seats: Vec::with_capacity(positions.len()),
+        };
+        for position in positions {
+            cells.add(position);
+        }
+        cells
+    }
+
+    /// Seats one more grain.
+    pub(super) fn add(&mut self, position: &Vector<D>) {
+        let cell = std::array::from_fn(|k| {
+            let axis = &self.axes[k];
+            let place = libm::floor((position[k] - axis.origin) / axis.edge);
+            place.clamp(0.0, f64::from(axis.count - 1)) as i32
+        });
+        let particle = self.seats.len() as u32;
+        self.seats.push(Seat {
+            cell,
+            next: NONE,
+            previous: NONE,
+        });
+        self.link(particle);
+    }
+
+    /// Unseats the grain that was seated last.
+    pub(super) fn forget_last(&mut self) {
+        if let Some(last) = self.seats.len().checked_sub(1) {
+            self.unlink(last as u32);
+            self.seats.pop();
+        }
+    }
+
+    /// The shortest edge, in d.
+    pub(super) fn least_edge(&self) -> f64 {
+        self.axes.iter().map(|axis| axis.edge).fold(f64::INFINITY, f64::min)
+    }
+
+    /// The most rings of cells that are worth a look: beyond, everything has
+    /// been seen.
+    pub(super) fn rings(&self) -> i32 {
+        self.axes.iter().map(|axis| axis.count).max().unwrap_or(1)
+    }
+
+    /// Faces of a grain's cell along an axis, in d.
+    #[inline]
+    pub(super) fn faces(&self, particle: u32, axis: usize) -> (f64, f64) {
+        let cell = self.seats[particle as usize].cell[axis];
+        let this = &self.axes[axis];
+        let low = this.origin + f64::from(cell) * this.edge;
+        let high = this.origin + f64::from(cell + 1) * this.edge;
+        if this.period.is_some() {
+            return (low, high);
+        }
+        (
+            if cell == 0 { f64::NEG_INFINITY } else { low },
+            if cell == this.count - 1 { f64::INFINITY } else { high },
+        )
+    }
+
+    /// Moves a grain to the next cell.
+    pub(super) fn transfer(&mut self, particle: u32, axis: usize, upward: bool) {
+        self.unlink(particle);
+        self.seats[particle as usize].cell[axis] += if upward { 1 } else { -1 };
+        self.link(particle);
+    }
+
+    /// Tells the grid that `turns` periods have been taken off a grain's
+    /// position.
+    pub(super) fn unwind(&mut self, particle: u32, axis: usize, turns: i32) {
+        self.seats[particle as usize].cell[axis] -= turns * self.axes[axis].count;
+    }
+
+    /// Calls `visit` for every grain within `rings` cells of `particle`'s own,
+    /// itself left out.
+    #[inline]
+    pub(super) fn for_each_near(
+        &self,
+        particle: u32,
+        rings: i32,
+        visit: impl FnMut(Found<D>),
+    ) {
+        let centre = self.seats[particle as usize].cell;
+        self.for_each_in(
+            particle,
+            centre.map(|c| c - rings),
+            centre.map(|c| c + rings),
+            visit,
+        );
+    }
+
+    /// Calls `visit` for every grain in the cells that came next to `particle`
+    /// when it moved along `axis`.
+    pub(super) fn for_each_ahead(
+        &self,
+        particle: u32,
+        axis: usize,
+        upward: bool,
+        visit: impl FnMut(Found<D>),
+    ) {
+        let centre = self.seats[particle as usize].cell;
+        let (mut low, mut high) = (centre.map(|c| c - 1), centre.map(|c| c + 1));
+        if upward {
+            low[axis] = high[axis];
+        } else {
+            high[axis] = low[axis];
+        }
+        self.for_each_in(particle, low, high, visit);
+    }
+
+    #[inline]
+    fn for_each_in(
+        &self,
+        particle: u32,
+        low: [i32; D],
+        high: [i32; D],
+        mut visit: impl FnMut(Found<D>),
+    ) {
+        let (mut low, mut high) = (low, high);
+        for axis in 0..D {
+            if self.axes[axis].period.is_none() {
+                low[axis] = low[axis].max(0);
+                high[axis] = high[axis].min(self.axes[axis].count - 1);
+            }
+            if low[axis] > high[axis] {
+                return;
+            }
+        }
+        let mut at = low;
+        loop {
+            let mut index = 0;
+            for axis in 0..D {
+                index += self.wrapped(at[axis], axis) * self.axes[axis].stride;
+            }
+            let mut other = self.heads[index];
+            while other != NONE {
+                let seat = &self.seats[other as usize];
+                if other != particle {
+                    let mut turns = [0; D];
+                    if seat.cell != at {
+                        for axis in 0..D {
+                            turns[axis] = (at[axis] - seat.cell[axis]) / self.axes[axis].count;
+                        }
+                    }
+                    visit(Found {
+                        particle: other,
+                        turns,
+                    });
+                }
+                other = seat.next;
+            }
+            // The next cell, the first axis running fastest.
+            let mut axis = 0;
+            loop {
+                if at[axis] < high[axis] {
+                    at[axis] += 1;
+                    break;
+                }
+                at[axis] = low[axis];
+                axis += 1;
+                if axis == D {
+                    return;
+                }
+            }
+        }
+    }
+
+    #[inline]
+    fn wrapped(&self, cell: i32, axis: usize) -> usize {
+        let count = self.axes[axis].count;
+        let cell = if cell < 0 {
+            cell + count
+        } else if cell >= count {
+            cell - count
+        } else {
+            cell
+        };
+        if (0..count).contains(&cell) {
+            cell as usize
+        } else {
+            cell.rem_euclid(count) as usize
+        }
+    }
+
+    fn index_of(&self, particle: u32) -> usize {
+        let cell = self.seats[particle as usize].cell;
+        (0..D).map(|axis| self.wrapped(cell[axis], axis) * self.axes[axis].stride).sum()
+    }
+
+    fn link(&mut self, particle: u32) {
+        let index = self.index_of(particle);
+        let head = self.heads[index];
+        let seat = &mut self.seats[particle as usize];
+        seat.next = head;
+        seat.previous = NONE;
+        if head != NONE {
+            self.seats[head as usize].previous = particle;
+        }
+        self.heads[index] = particle;
+    }
+
+    fn unlink(&mut self, particle: u32) {
+        let Seat { next, previous, .. } = self.seats[particle as usize];
+        if next != NONE {
+            self.seats[next as usize].previous = previous;
+        }
+        if previous == NONE {
+            let index = self.index_of(particle);
+            self.heads[index] = next;
+        } else {
+            self.seats[previous as usize].next = next;
+        }
+    }
+}

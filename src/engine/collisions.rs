@@ -1,0 +1,479 @@
+//! Carrying out collisions.
+
+use crate::engine::cone::{Touch, project};
+use crate::engine::search::{Partner, Slot};
+use crate::engine::settings::Collapse;
+use crate::engine::simulation::Simulation;
+use crate::engine::view::View;
+use crate::model::{
+    Boundary, CollisionRule, Dynamics, Impact, Model, Observer, Obstacle, Occurrence,
+    OccurrenceKind, Place, Reason, Rebound, SleepDecision, Spins, StatePolicy, WakeCause,
+    WakeDecision, Wall,
+};
+use crate::particle::{Mode, Particle, ParticleId, Vector, WallId};
+use crate::time::Time;
+
+/// Squared distance over which two surfaces count as touching, in d².
+const TOUCHING: f64 = 1.0e-11;
+
+impl<M: Model<D>, const D: usize> Simulation<M, D> {
+    /// A mobile grain meets another grain now.
+    pub(super) fn collide_pair<O: Observer<D>>(
+        &mut self,
+        particle: u32,
+        other: u32,
+        observer: &mut O,
+    ) {
+        let now = self.world.clock;
+        let struck_static = self.world.bodies[other as usize].mode.is_static();
+        let (a, b) = if struck_static || particle < other {
+            (particle, other)
+        } else {
+            (other, particle)
+        };
+        let one = self.world.particle_now(&self.model, a);
+        let mut two = self.world.particle_now(&self.model, b);
+        // The image of this moment, not the one of the prediction.
+        let apart = self.world.displacement(&self.model, &two, &one);
+        let distance = apart.norm();
+        let normal = apart / distance;
+        two.position = one.position - apart;
+        self.counts.guard += u64::from(self.traces.held_at(a, b, now));
+        let mut impact = self.impact(a, one, normal, two.diameter);
+        impact.obstacle = Obstacle::Particle {
+            id: ParticleId(b),
+            particle: two,
+        };
+        let impact_speed = impact.closing_speed();
+
+        let mut kind = OccurrenceKind::Pair;
+        let mut reason = None;
+        let mut extra_energy = 0.0;
+        if struck_static {
+            kind = OccurrenceKind::Frozen;
+            if two.mode == Mode::Frozen {
+                let near = View {
+                    model: &self.model,
+                    world: &self.world,
+                };
+                let struck = &self.memories[b as usize];
+                let policy = self.model.state_policy();
+                if let WakeDecision::Wake(waking, why) = policy.should_wake(&impact, &near, struck)
+                {
+                    kind = OccurrenceKind::Wake;
+                    reason = Some(why);
+                    extra_energy = waking.extra_energy;
+                    two.velocity = waking.velocity;
+                    two.mode = Mode::Normal;
+                    impact.obstacle = Obstacle::Particle {
+                        id: ParticleId(b),
+                        particle: two,
+                    };
+                }
+            }
+        }
+        let two_mobile = two.mode.is_mobile();
+        let mut rebound = self.rebound(&impact, a, Some(b));
+        if extra_energy > 0.0 {
+            rebound.other_velocity = with_energy(rebound.other_velocity, two.mass, extra_energy);
+        }
+        if !two_mobile {
+            self.lift(&impact, &mut rebound);
+        }
+
+        let sleep = self.ask_sleep(&impact, rebound.velocity, a);
+        let mirrored = Impact {
+            id: ParticleId(b),
+            particle: two,
+            obstacle: Obstacle::Particle {
+                id: ParticleId(a),
+                particle: one,
+            },
+            normal: -normal,
+            ..impact
+        };
+        let mut sleep_other = None;
+        if kind == OccurrenceKind::Pair {
+            sleep_other = self.ask_sleep(&mirrored, rebound.other_velocity, b);
+        }
+
+        let run = self.traces.collided(a, Partner::Particle(b), now);
+        let held = (struck_static && !two_mobile && rebound.elastic).then_some(b);
+        self.traces.hold(a, held, now);
+        self.settle(a, one.position, rebound.velocity);
+        let mut run_other = 0;
+        if two_mobile {
+            run_other = self.traces.collided(b, Partner::Particle(a), now);
+            self.traces.hold(b, None, now);
+            self.settle(b, two.position, rebound.other_velocity);
+        }
+        if kind == OccurrenceKind::Wake {
+            let cause = WakeCause::Hit {
+                impact: mirrored,
+                after: rebound.other_velocity,
+            };
+            self.tell_woken(b, &cause);
+        }
+        let caught = self.end_cascade(a, run);
+        let caught_other = two_mobile && self.end_cascade(b, run_other);
+
+        match kind {
+            OccurrenceKind::Pair => self.counts.pair += 1,
+            OccurrenceKind::Wake => self.counts.wake += 1,
+            _ => self.counts.frozen += 1,
+        }
+        self.counts.elastic += u64::from(rebound.elastic);
+        let velocity = self.world.bodies[a as usize].velocity;
+        self.report(
+            &Occurrence {
+                time: now,
+                kind,
+                particle: ParticleId(a),
+                other: Some(ParticleId(b)),
+                wall: None,
+                impact_speed,
+                impulse: (velocity - one.velocity) * one.mass,
+                velocity,
+                other_velocity: self.world.bodies[b as usize].velocity,
+                elastic: rebound.elastic,
+                reason: reason.or(sleep.map(|(_, why)| why)),
+            },
+            observer,
+        );
+        self.predict(a);
+        if two_mobile {
+            self.predict(b);
+        }
+        self.begin_sleep(a, sleep, caught, observer);
+        if two_mobile {
+            self.begin_sleep(b, sleep_other, caught_other, observer);
+        }
+    }
+
+    /// A mobile grain meets a wall now.
+    pub(super) fn collide_wall<O: Observer<D>>(
+        &mut self,
+        particle: u32,
+        wall: WallId,
+        observer: &mut O,
+    ) {
+        let now = self.world.clock;
+        let one = self.world.particle_now(&self.model, particle);
+        let this = &self.model.boundary().walls()[wall.index()];
+        let normal = this.normal(&one.position, now);
+        let obstacle = Obstacle::Wall {
+            id: wall,
+            velocity: this.velocity(&one.position, now),
+            restitution: this.restitution(),
+        };
+        let mut impact = self.impact(particle, one, normal, 0.0);
+        impact.obstacle = obstacle;
+        let impact_speed = impact.closing_speed();
+        let mut rebound = self.rebound(&impact, particle, None);
+        self.lift(&impact, &mut rebound);
+        let sleep = self.ask_sleep(&impact, rebound.velocity, particle);
+
+        let run = self.traces.collided(particle, Partner::Wall(wall), now);
+        self.traces.hold(particle, None, now);
+        self.settle(particle, one.position, rebound.velocity);
+        let caught = self.end_cascade(particle, run);
+        self.counts.wall += 1;
+        self.counts.elastic += u64::from(rebound.elastic);
+        let velocity = self.world.bodies[particle as usize].velocity;
+        self.report(
+            &Occurrence {
+                time: now,
+                kind: OccurrenceKind::Wall,
+                particle: ParticleId(particle),
+                other: None,
+                wall: Some(wall),
+                impact_speed,
+                impulse: (velocity - one.velocity) * one.mass,
+                velocity,
+                other_velocity: Vector::zeros(),
+                elastic: rebound.elastic,
+                reason: sleep.map(|(_, why)| why),
+            },
+            observer,
+        );
+        self.predict(particle);
+        self.begin_sleep(particle, sleep, caught, observer);
+    }
+
+    /// An impact whose obstacle has still to be filled in.
+    fn impact(
+        &self,
+        particle: u32,
+        one: Particle<D>,
+        normal: Vector<D>,
+        other_diameter: f64,
+    ) -> Impact<D> {
+        let now = self.world.clock;
+        let dynamics = self.model.dynamics();
+        let growth = if M::Dynamics::GROWS {
+            // Diameters at t = 0 grow at the rate; these are those of now.
+            let scale = 1.0 + dynamics.growth_rate() * now.units();
+            0.5 * (one.diameter + other_diameter) / scale * dynamics.growth_rate()
+        } else {
+            0.0
+        };
+        Impact {
+            time: now,
+            id: ParticleId(particle),
+            particle: one,
+            obstacle: Obstacle::Wall {
+                id: WallId(0),
+                velocity: Vector::zeros(),
+                restitution: 1.0,
+            },
+            normal,
+            growth,
+            gravity: dynamics.gravity(now),
+            ground_velocity: dynamics.ground_velocity(&one.position, now),
+        }
+    }
+
+    /// What the rule makes of an impact; nothing if rounding, or a velocity
+    /// given back, has the two separate already.
+    fn rebound(&mut self, impact: &Impact<D>, own: u32, other: Option<u32>) -> Rebound<D> {
+        if impact.closing_speed() <= 0.0 {
+            return Rebound {
+                velocity: impact.particle.velocity,
+                other_velocity: impact.obstacle_velocity(),
+                elastic: false,
+            };
+        }
+        let mut own_spin = self.spins[own as usize];
+        let mut other_spin = other.map(|id| self.spins[id as usize]);
+        let rebound = self.model.collision_rule().collide(
+            impact,
+            Spins {
+                own: &mut own_spin,
+                other: other_spin.as_mut(),
+            },
+        );
+        self.spins[own as usize] = own_spin;
+        if let (Some(id), Some(spin)) = (other, other_spin) {
+            self.spins[id as usize] = spin;
+        }
+        rebound
+    }
+
+    /// The floor guard: a least speed away from a static obstacle.
+    fn lift(&mut self, impact: &Impact<D>, rebound: &mut Rebound<D>) {
+        let least = self.settings.guards.floor_speed;
+        if least == 0.0 {
+            return;
+        }
+        let leaving = (rebound.velocity - impact.obstacle_velocity()).dot(&impact.normal);
+        if leaving < least {
+            rebound.velocity += impact.normal * (least - leaving);
+            self.counts.guard += 1;
+        }
+    }
+
+    fn ask_sleep(
+        &mut self,
+        impact: &Impact<D>,
+        after: Vector<D>,
+        particle: u32,
+    ) -> Option<(Place, Reason)> {
+        let near = View {
+            model: &self.model,
+            world: &self.world,
+        };
+        let memory = &mut self.memories[particle as usize];
+        let policy = self.model.state_policy();
+        match policy.should_sleep(impact, after, &near, memory) {
+            SleepDecision::Stay(_) => None,
+            SleepDecision::Sleep(place, reason) => Some((place, reason)),
+        }
+    }
+
+    /// Writes a grain's state after a collision; whatever it was about to do is
+    /// void.
+    fn settle(&mut self, particle: u32, position: Vector<D>, velocity: Vector<D>) {
+        let model = &self.model;
+        self.world
+            .write(model, particle, position, velocity, Mode::Normal);
+        self.slots[particle as usize] = Slot {
+            crossing: self.slots[particle as usize].crossing,
+            ..Slot::EMPTY
+        };
+        self.note_speed(particle);
+    }
+
+    /// The cascade guard and the collapse detector; true if the grain is caught
+    /// between static ones and has to sleep where it is.
+    fn end_cascade(&mut self, particle: u32, run: u32) -> bool {
+        let guards = self.settings.guards;
+        if guards.collapse.is_some_and(|limit| run >= limit) && self.collapse.is_none() {
+            let touched = self.touched(particle);
+            let mut particles = vec![ParticleId(particle)];
+            particles.extend(touched.iter().filter_map(|(_, id)| id.map(ParticleId)));
+            if let Partner::Particle(last) = self.traces[particle as usize].partner
+                && !particles.contains(&ParticleId(last))
+            {
+                particles.push(ParticleId(last));
+            }
+            self.collapse = Some(Collapse {
+                time: self.world.clock,
+                particles,
+                collisions: u64::from(run),
+            });
+        }
+        if !guards.cascade.is_some_and(|limit| run >= limit && run % limit == 0) {
+            return false;
+        }
+        let touches: Vec<Touch<D>> = self.touched(particle).into_iter().map(|t| t.0).collect();
+        if touches.is_empty() {
+            return false;
+        }
+        self.counts.guard += 1;
+        let before = self.world.bodies[particle as usize].velocity;
+        let Some(resting) = project(before, &touches, 0.0) else {
+            return true;
+        };
+        let mut exit = guards.exit_speed;
+        let mut leaving = project(before, &touches, exit);
+        // In a narrow cone a small exit speed along the normals is a large one
+        // along the axis.
+        let most = 10.0 * guards.exit_speed;
+        if let Some(fast) = leaving
+            && (fast - resting).norm() > most
+        {
+            exit *= most / (fast - resting).norm();
+            leaving = project(before, &touches, exit);
+        }
+        match leaving {
+            Some(velocity) => {
+                self.world.bodies[particle as usize].velocity = velocity;
+                false
+            }
+            None if resting.norm() <= most => true,
+            None => {
+                self.world.bodies[particle as usize].velocity = resting;
+                false
+            }
+        }
+    }
+
+    /// Static surfaces that a grain touches now.
+    fn touched(&self, particle: u32) -> Vec<(Touch<D>, Option<u32>)> {
+        let now = self.world.clock;
+        let one = self.world.particle_now(&self.model, particle);
+        let mut touches = Vec::new();
+        self.world.cells.for_each_near(particle, 1, |found| {
+            let other = self.world.particle_now(&self.model, found.particle);
+            if other.mode.is_mobile() {
+                return;
+            }
+            let apart = self.world.displacement(&self.model, &other, &one);
+            let contact = 0.5 * (one.diameter + other.diameter);
+            if apart.norm_squared() - contact * contact < TOUCHING {
+                let normal = apart.normalize();
+                touches.push((
+                    Touch {
+                        normal,
+                        speed: other.velocity.dot(&normal),
+                    },
+                    Some(found.particle),
+                ));
+            }
+        });
+        // By id, so that the outcome does not depend on the grid.
+        touches.sort_by_key(|touch| touch.1);
+        for wall in self.model.boundary().walls() {
+            if wall.distance(&one.position, now) - one.radius() < 0.5 * TOUCHING {
+                let normal = wall.normal(&one.position, now);
+                let speed = wall.velocity(&one.position, now).dot(&normal);
+                touches.push((Touch { normal, speed }, None));
+            }
+        }
+        touches
+    }
+
+    pub(super) fn report<O: Observer<D>>(&self, occurrence: &Occurrence<D>, observer: &mut O) {
+        observer.observe(
+            occurrence,
+            &View {
+                model: &self.model,
+                world: &self.world,
+            },
+        );
+    }
+
+    /// A grain that has just been predicted anew starts to fall asleep.
+    fn begin_sleep<O: Observer<D>>(
+        &mut self,
+        particle: u32,
+        decision: Option<(Place, Reason)>,
+        caught: bool,
+        observer: &mut O,
+    ) {
+        if caught {
+            let reason = Reason::new("caught between static grains", 0.0, 0.0);
+            self.fall_asleep(particle, Some(reason), observer);
+            return;
+        }
+        match decision {
+            None => {}
+            Some((Place::Here, reason)) => self.fall_asleep(particle, Some(reason), observer),
+            Some((Place::HalfWay, _)) => {
+                if let Some(wait) = self.next_collision(particle) {
+                    self.slots[particle as usize].sleep = self.world.clock + 0.5 * wait;
+                    self.enqueue(particle);
+                }
+            }
+        }
+    }
+
+    /// How long until a grain's next collision if everyone flies on as now.
+    fn next_collision(&mut self, particle: u32) -> Option<f64> {
+        let start = self.world.clock;
+        let horizon = start + self.settings.sleep_horizon;
+        let horizon = horizon.min(Time::LAST);
+        let mut first = horizon;
+        let mut any = false;
+        for wall in 0..self.model.boundary().walls().len() {
+            if let Some(time) = self.wall_contact(particle, WallId(wall as u16), first) {
+                first = time;
+                any = true;
+            }
+        }
+        let edge = self.world.cells.least_edge();
+        let farthest_ring = self.world.cells.rings();
+        let mut rings = 1;
+        loop {
+            let mut found = std::mem::take(&mut self.scratch);
+            found.clear();
+            self.world
+                .cells
+                .for_each_near(particle, rings, |other| found.push(other));
+            for other in &found {
+                if let Some(time) = self.pair_contact(particle, other.particle, other.turns, first)
+                {
+                    first = time;
+                    any = true;
+                }
+            }
+            self.scratch = found;
+            // Whoever is farther than this away cannot come first.
+            let within = first - start;
+            let reach = self.reach(particle, within);
+            if rings >= farthest_ring || f64::from(rings) * edge > reach {
+                return any.then_some(first - start);
+            }
+            rings = (rings + 1).max((reach / edge).min(f64::from(farthest_ring)) as i32);
+        }
+    }
+}
+
+/// A velocity lengthened so that its kinetic energy grows by `energy`.
+fn with_energy<const D: usize>(velocity: Vector<D>, mass: f64, energy: f64) -> Vector<D> {
+    let squared = velocity.norm_squared();
+    if squared == 0.0 {
+        return velocity;
+    }
+    velocity * ((squared + 2.0 * energy / mass) / squared).sqrt()
+}

@@ -1,0 +1,114 @@
+//! The event loop.
+
+use std::cmp::Reverse;
+
+use crate::engine::queue::{Key, Rank};
+use crate::engine::search::Partner;
+use crate::engine::settings::{Limits, StopReason};
+use crate::engine::simulation::Simulation;
+use crate::model::{Model, Observer};
+
+impl<M: Model<D>, const D: usize> Simulation<M, D> {
+    /// Carries out events until a limit is reached, and says which.
+    ///
+    /// A run can go on after any stop but a collapse; where it stopped leaves no
+    /// trace in the trajectory. Whoever watches is shown each physical event
+    /// just after it has happened. If everything is at rest, or nothing lies
+    /// ahead, before a finite time limit, the clock stays at the last event.
+    pub fn run<O: Observer<D>>(&mut self, limits: &Limits, observer: &mut O) -> StopReason {
+        loop {
+            if let Some(collapse) = &self.collapse {
+                return StopReason::Collapse(collapse.clone());
+            }
+            if limits.all_frozen && self.world.modes.mobile() == 0 {
+                return StopReason::AllFrozen;
+            }
+            if self.counts.total() >= limits.events {
+                return StopReason::Events;
+            }
+            let Some((key, source)) = self.next_event() else {
+                if limits.time.is_finite() {
+                    self.world.clock = self.world.clock.max(limits.time);
+                    return StopReason::Time;
+                }
+                return StopReason::NothingLeft;
+            };
+            if key.time > limits.time {
+                self.world.clock = self.world.clock.max(limits.time);
+                return StopReason::Time;
+            }
+            if key.time > self.regrid_at {
+                self.world.clock = self.regrid_at;
+                self.rebuild_grid();
+                continue;
+            }
+            debug_assert!(
+                key.time >= self.world.clock,
+                "an event at {} came to light only at {}",
+                key.time,
+                self.world.clock
+            );
+            self.world.clock = self.world.clock.max(key.time);
+            match source {
+                Source::Policy => {
+                    if let Some(Reverse(alarm)) = self.alarms.pop() {
+                        self.policy_event(alarm.key.low, alarm.event, observer);
+                    }
+                }
+                Source::Particle(particle) => self.carry_out(particle, key, observer),
+            }
+        }
+    }
+
+    fn carry_out<O: Observer<D>>(&mut self, particle: u32, key: Key, observer: &mut O) {
+        let slot = self.slots[particle as usize];
+        match (key.rank, slot.partner) {
+            (Rank::Contact, Partner::Particle(other)) => {
+                if self.world.bodies[other as usize].stamp == slot.partner_stamp {
+                    self.collide_pair(particle, other, observer);
+                } else {
+                    // The other grain has met someone else in the meantime.
+                    self.predict(particle);
+                }
+            }
+            (Rank::Wall, Partner::Wall(wall)) => self.collide_wall(particle, wall, observer),
+            (Rank::Sleep, _) => self.fall_asleep(particle, None, observer),
+            _ => {
+                let axis = usize::from(slot.axis);
+                self.world.cells.transfer(particle, axis, slot.upward);
+                self.counts.transfer += 1;
+                self.predict_ahead(particle, axis, slot.upward);
+            }
+        }
+    }
+
+    /// The next event and where it comes from; of two at one instant the one
+    /// whose key is smaller.
+    fn next_event(&mut self) -> Option<(Key, Source)> {
+        let policy = self.alarms.peek().map(|Reverse(alarm)| alarm.key);
+        match (self.queue.peek(), policy) {
+            (None, None) => None,
+            (Some((particle, key)), None) => Some((key, Source::Particle(particle))),
+            (None, Some(key)) => Some((key, Source::Policy)),
+            (Some((particle, key)), Some(other)) => Some(if other < key {
+                (other, Source::Policy)
+            } else {
+                (key, Source::Particle(particle))
+            }),
+        }
+    }
+
+    /// Lays the grid anew for diameters that have outgrown it.
+    fn rebuild_grid(&mut self) {
+        self.lay_grid();
+        for particle in 0..self.world.bodies.len() as u32 {
+            self.predict(particle);
+        }
+    }
+}
+
+/// Where an event comes from.
+enum Source {
+    Particle(u32),
+    Policy,
+}

@@ -1,0 +1,140 @@
+//! Book-keeping of cascades: how often a grain has collided at one instant, and
+//! with whom last.
+
+use std::ops::{Index, IndexMut};
+
+use crate::engine::search::Partner;
+use crate::time::Time;
+
+/// Collisions closer together than this, in √(d/g), are at one instant.
+const INSTANT: f64 = 1.0e-12;
+
+/// How many recent contacts of a grain the hold remembers.
+const HELD: usize = 6;
+
+/// Earlier than every instant of a run.
+const LONG_AGO: Time = Time::FIRST;
+
+/// What is remembered of a grain's collisions.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Trace {
+    /// Whom it left at its last event, if that was a collision.
+    pub(super) partner: Partner,
+    /// Collisions at the instant of the last one.
+    pub(super) run: u32,
+    /// When it last collided.
+    pub(super) last: Time,
+}
+
+/// Static partners that a grain may not meet again before a time.
+#[derive(Clone, Copy, Debug)]
+struct Holds {
+    partners: [(u32, Time); HELD],
+    next: usize,
+}
+
+impl Holds {
+    const NONE: Holds = Holds {
+        partners: [(u32::MAX, LONG_AGO); HELD],
+        next: 0,
+    };
+}
+
+/// The traces of all grains.
+#[derive(Clone, Debug)]
+pub(super) struct Traces {
+    traces: Vec<Trace>,
+    /// Empty if the hold is off.
+    holds: Vec<Holds>,
+    hold: f64,
+}
+
+impl Traces {
+    pub(super) fn new(hold: f64) -> Self {
+        Traces {
+            traces: Vec::new(),
+            holds: Vec::new(),
+            hold,
+        }
+    }
+
+    pub(super) fn add(&mut self) {
+        self.traces.push(Trace {
+            partner: Partner::Nobody,
+            run: 0,
+            last: Time::NEVER,
+        });
+        if self.hold > 0.0 {
+            self.holds.push(Holds::NONE);
+        }
+    }
+
+    pub(super) fn forget_last(&mut self) {
+        self.traces.pop();
+        self.holds.pop();
+    }
+
+    /// Notes a collision; returns how many the grain has made at this instant.
+    pub(super) fn collided(&mut self, particle: u32, partner: Partner, now: Time) -> u32 {
+        let trace = &mut self.traces[particle as usize];
+        let at_once = trace.last.is_finite() && now - trace.last < INSTANT;
+        trace.run = if at_once { trace.run.saturating_add(1) } else { 1 };
+        trace.last = now;
+        trace.partner = partner;
+        trace.run
+    }
+
+    /// Keeps a pair apart after an elastic contact with a static grain; any
+    /// other contact of the grain ends all its holds, so that nothing fast is
+    /// ever held.
+    pub(super) fn hold(&mut self, particle: u32, partner: Option<u32>, now: Time) {
+        if self.hold == 0.0 {
+            return;
+        }
+        let holds = &mut self.holds[particle as usize];
+        match partner {
+            Some(partner) => {
+                holds.partners[holds.next] = (partner, now + self.hold);
+                holds.next = (holds.next + 1) % HELD;
+            }
+            None => *holds = Holds::NONE,
+        }
+    }
+
+    /// Whether a contact of two grains now is one that was put off.
+    pub(super) fn held_at(&self, first: u32, second: u32, now: Time) -> bool {
+        self.hold > 0.0 && self.held_until(first, second, LONG_AGO) == now
+    }
+
+    /// When two grains that would meet at `time` are allowed to.
+    #[inline]
+    pub(super) fn held_until(&self, first: u32, second: u32, time: Time) -> Time {
+        if self.hold == 0.0 {
+            return time;
+        }
+        let of = |particle: u32, partner: u32| {
+            let holds = &self.holds[particle as usize].partners;
+            holds
+                .iter()
+                .filter(move |(held, _)| *held == partner)
+                .map(|(_, until)| *until)
+        };
+        of(first, second)
+            .chain(of(second, first))
+            .fold(time, Time::max)
+    }
+}
+
+impl Index<usize> for Traces {
+    type Output = Trace;
+
+    fn index(&self, index: usize) -> &Trace {
+        &self.traces[index]
+    }
+}
+
+impl IndexMut<usize> for Traces {
+    fn index_mut(&mut self, index: usize) -> &mut Trace {
+        &mut self.traces[index]
+    }
+}

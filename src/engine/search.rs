@@ -1,0 +1,406 @@
+//! Prediction: each grain's next contact, wall and cell crossing.
+//!
+//! What holds between events, and what makes one entry a grain enough: for
+//! every pair that may meet next to each other's cells, the time of their
+//! contact is not earlier than the earlier of the two grains' *bounds*, the
+//! instants at which each will be predicted anew against everybody. A contact
+//! that lies after the partner's bound need not be noted, for it will be found
+//! again then. Static grains own no entry and have no bound; whoever meets one
+//! notes it, and a grain that becomes static tells its neighbours.
+//!
+//! The instant of a contact depends on the states of the two grains alone, not
+//! on when it is asked for: it is always counted from the later of their last
+//! events, and the one with the smaller id comes first.
+
+use crate::engine::body::scale_at;
+use crate::engine::cells::Found;
+use crate::engine::queue::{Key, Rank};
+use crate::engine::simulation::Simulation;
+use crate::model::{
+    Approach, Boundary, Dynamics, Encounter, Exit, Flight, Forecast, Model, Predictor,
+};
+use crate::particle::{Vector, WallId};
+use crate::time::Time;
+
+/// Who a grain meets.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Partner {
+    Nobody,
+    Particle(u32),
+    Wall(WallId),
+}
+
+/// What lies ahead of a grain.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Slot {
+    /// Its next contact, as far as it has to know.
+    pub(super) contact: Time,
+    pub(super) partner: Partner,
+    /// The partner's stamp when this was foreseen.
+    pub(super) partner_stamp: u32,
+    /// When it leaves its cell, and through which face.
+    pub(super) crossing: Time,
+    pub(super) axis: u8,
+    pub(super) upward: bool,
+    /// When it falls asleep, if it is about to.
+    pub(super) sleep: Time,
+}
+
+impl Slot {
+    pub(super) const EMPTY: Slot = Slot {
+        contact: Time::NEVER,
+        partner: Partner::Nobody,
+        partner_stamp: 0,
+        crossing: Time::NEVER,
+        axis: 0,
+        upward: false,
+        sleep: Time::NEVER,
+    };
+
+    /// When the grain will be predicted anew.
+    #[inline]
+    pub(super) fn bound(&self) -> Time {
+        self.contact.min(self.sleep)
+    }
+
+    /// The order of this contact among those at the same time.
+    #[inline]
+    fn contact_key(&self, particle: u32) -> Key {
+        contact_key(particle, self.contact, self.partner)
+    }
+
+    /// The entry of a grain with this slot.
+    pub(super) fn key(&self, particle: u32) -> Key {
+        let own = |time, rank| Key {
+            time,
+            rank,
+            low: particle,
+            high: particle,
+        };
+        self.contact_key(particle)
+            .min(own(self.sleep, Rank::Sleep))
+            .min(own(self.crossing, Rank::Transfer))
+    }
+}
+
+#[inline]
+fn contact_key(particle: u32, time: Time, partner: Partner) -> Key {
+    let (rank, other) = match partner {
+        Partner::Particle(other) => (Rank::Contact, other),
+        Partner::Wall(wall) => (Rank::Wall, u32::from(wall.0)),
+        Partner::Nobody => (Rank::Transfer, particle),
+    };
+    let (low, high) = match rank {
+        Rank::Contact => (particle.min(other), particle.max(other)),
+        _ => (particle, other),
+    };
+    Key {
+        time,
+        rank,
+        low,
+        high,
+    }
+}
+
+impl<M: Model<D>, const D: usize> Simulation<M, D> {
+    /// Finds what lies ahead of a grain whose state has just changed, or whose
+    /// foreseen contact has lost its partner.
+    pub(super) fn predict(&mut self, particle: u32) {
+        let slot = &mut self.slots[particle as usize];
+        slot.contact = Time::NEVER;
+        slot.partner = Partner::Nobody;
+        let mut found = std::mem::take(&mut self.scratch);
+        found.clear();
+        self.world
+            .cells
+            .for_each_near(particle, 1, |other| found.push(other));
+        if self.world.bodies[particle as usize].mode.is_static() {
+            self.slots[particle as usize].sleep = Time::NEVER;
+            self.tell_neighbours(particle, &found);
+        } else {
+            // The grain just left comes first: it is often the next, and a
+            // near contact spares work on all others.
+            if let Partner::Particle(last) = self.traces[particle as usize].partner
+                && let Some(place) = found.iter().position(|other| other.particle == last)
+            {
+                found.swap(0, place);
+            }
+            for (place, other) in found.iter().enumerate() {
+                if place == 1 {
+                    self.meet_walls(particle);
+                }
+                self.meet(particle, other);
+            }
+            if found.len() < 2 {
+                self.meet_walls(particle);
+            }
+        }
+        self.scratch = found;
+        self.find_crossing(particle);
+        self.enqueue(particle);
+    }
+
+    /// Looks at the cells that came next to a grain's own as it moved on.
+    pub(super) fn predict_ahead(&mut self, particle: u32, axis: usize, upward: bool) {
+        let mut found = std::mem::take(&mut self.scratch);
+        found.clear();
+        self.world
+            .cells
+            .for_each_ahead(particle, axis, upward, |other| found.push(other));
+        if self.world.bodies[particle as usize].mode.is_static() {
+            self.tell_neighbours(particle, &found);
+        } else {
+            for other in &found {
+                self.meet(particle, other);
+            }
+        }
+        self.scratch = found;
+        self.find_crossing(particle);
+        self.enqueue(particle);
+    }
+
+    pub(super) fn enqueue(&mut self, particle: u32) {
+        let key = self.slots[particle as usize].key(particle);
+        self.queue.set(particle, key);
+    }
+
+    /// Lets every mobile neighbour note its contact with a static grain.
+    fn tell_neighbours(&mut self, particle: u32, found: &[Found<D>]) {
+        for other in found {
+            if self.world.bodies[other.particle as usize].mode.is_mobile() {
+                let back = Found {
+                    particle,
+                    turns: other.turns.map(|turns| -turns),
+                };
+                if self.meet(other.particle, &back) {
+                    self.enqueue(other.particle);
+                }
+            }
+        }
+    }
+
+    /// Notes a mobile grain's contact with another if it comes first; true if
+    /// it did.
+    fn meet(&mut self, particle: u32, other: &Found<D>) -> bool {
+        let slot = self.slots[particle as usize];
+        let Some(time) = self.pair_contact(particle, other.particle, other.turns, slot.contact)
+        else {
+            return false;
+        };
+        let partner = Partner::Particle(other.particle);
+        let first = contact_key(particle, time, partner) < slot.contact_key(particle);
+        if !first || time > self.slots[other.particle as usize].bound() {
+            return false;
+        }
+        let partner_stamp = self.world.bodies[other.particle as usize].stamp;
+        let slot = &mut self.slots[particle as usize];
+        slot.contact = time;
+        slot.partner = partner;
+        slot.partner_stamp = partner_stamp;
+        true
+    }
+
+    /// Notes a grain's contact with a wall if it comes first.
+    fn meet_walls(&mut self, particle: u32) {
+        for wall in 0..self.model.boundary().walls().len() {
+            let wall = WallId(wall as u16);
+            let slot = self.slots[particle as usize];
+            let Some(time) = self.wall_contact(particle, wall, slot.contact) else {
+                continue;
+            };
+            let partner = Partner::Wall(wall);
+            if contact_key(particle, time, partner) < slot.contact_key(particle) {
+                let slot = &mut self.slots[particle as usize];
+                slot.contact = time;
+                slot.partner = partner;
+            }
+        }
+    }
+
+    /// The first contact of two grains after the later of their last events and
+    /// not after `until`.
+    pub(super) fn pair_contact(
+        &mut self,
+        one: u32,
+        other: u32,
+        turns: [i32; D],
+        until: Time,
+    ) -> Option<Time> {
+        let (first, second, sign) = if one < other {
+            (one, other, 1)
+        } else {
+            (other, one, -1)
+        };
+        let (a, b) = (
+            &self.world.bodies[first as usize],
+            &self.world.bodies[second as usize],
+        );
+        if a.mode.is_static() && b.mode.is_static() {
+            return None;
+        }
+        let mut base = a.since.max(b.since);
+        let mut horizon = until - base;
+        if horizon < 0.0 {
+            return None;
+        }
+        let touching = self.touching(first, second);
+        let model = &self.model;
+        let mut flight_a = self.world.flight(model, first);
+        if a.since < base {
+            flight_a = flight_a.advanced(base - a.since);
+        }
+        let mut flight_b = self.world.flight(model, second);
+        if b.since < base {
+            flight_b = flight_b.advanced(base - b.since);
+        }
+        let shift = self.shift(turns, sign);
+        let sum = a.radius + b.radius;
+        let mut distance = sum * scale_at::<M, D>(model, base);
+        let growth = if M::Dynamics::GROWS {
+            sum * model.dynamics().growth_rate()
+        } else {
+            0.0
+        };
+        if base == self.world.clock {
+            let apart = flight_b.position(0.0) + shift - flight_a.position(0.0);
+            let squared = apart.norm_squared();
+            if squared < distance * distance {
+                self.deepest = self.deepest.max(distance - squared.sqrt());
+            }
+        }
+        let mut touching = touching;
+        loop {
+            let forecast = model.predictor().pair(&Approach {
+                first: flight_a,
+                second: flight_b,
+                shift,
+                distance,
+                growth,
+                touching,
+                horizon,
+            });
+            match forecast {
+                Forecast::Never => return None,
+                Forecast::Contact(after) => {
+                    let time = self.traces.held_until(first, second, base + after);
+                    return (time <= until).then_some(time);
+                }
+                Forecast::AskAgain(after) => {
+                    if after >= horizon {
+                        return None;
+                    }
+                    base = base + after;
+                    horizon = until - base;
+                    flight_a = flight_a.advanced(after);
+                    flight_b = flight_b.advanced(after);
+                    distance += growth * after;
+                    touching = false;
+                }
+            }
+        }
+    }
+
+    /// The first contact of a grain with a wall after its last event and not
+    /// after `until`.
+    pub(super) fn wall_contact(&self, particle: u32, wall: WallId, until: Time) -> Option<Time> {
+        let body = &self.world.bodies[particle as usize];
+        let model = &self.model;
+        let mut base = body.since;
+        let mut horizon = until - base;
+        if horizon < 0.0 {
+            return None;
+        }
+        let mut flight = self.world.flight(model, particle);
+        let mut touching = self.traces[particle as usize].partner == Partner::Wall(wall);
+        let mut radius = body.radius * scale_at::<M, D>(model, base);
+        let growth = if M::Dynamics::GROWS {
+            body.radius * model.dynamics().growth_rate()
+        } else {
+            0.0
+        };
+        loop {
+            let forecast = model.predictor().wall(&Encounter {
+                flight,
+                wall: &model.boundary().walls()[wall.index()],
+                since: base,
+                radius,
+                growth,
+                touching,
+                horizon,
+            });
+            match forecast {
+                Forecast::Never => return None,
+                Forecast::Contact(after) => {
+                    let time = base + after;
+                    return (time <= until).then_some(time);
+                }
+                Forecast::AskAgain(after) => {
+                    if after >= horizon {
+                        return None;
+                    }
+                    base = base + after;
+                    horizon = until - base;
+                    flight = flight.advanced(after);
+                    radius += growth * after;
+                    touching = false;
+                }
+            }
+        }
+    }
+
+    /// Two grains have just collided with each other and nothing has happened
+    /// to either since.
+    fn touching(&self, first: u32, second: u32) -> bool {
+        let (a, b) = (
+            &self.world.bodies[first as usize],
+            &self.world.bodies[second as usize],
+        );
+        let first_left = self.traces[first as usize].partner == Partner::Particle(second);
+        let second_left = self.traces[second as usize].partner == Partner::Particle(first);
+        match (a.mode.is_mobile(), b.mode.is_mobile()) {
+            (true, true) => first_left && second_left && a.since == b.since,
+            (true, false) => first_left && b.since <= a.since,
+            (false, true) => second_left && a.since <= b.since,
+            (false, false) => false,
+        }
+    }
+
+    /// The vector of `turns` periods, in d.
+    fn shift(&self, turns: [i32; D], sign: i32) -> Vector<D> {
+        let mut shift = Vector::zeros();
+        if turns != [0; D] {
+            for axis in 0..D {
+                if let Some(period) = self.model.boundary().period(axis) {
+                    shift[axis] = f64::from(sign * turns[axis]) * period.length;
+                }
+            }
+        }
+        shift
+    }
+
+    /// Finds when a grain leaves its cell.
+    pub(super) fn find_crossing(&mut self, particle: u32) {
+        let flight = self.world.flight(&self.model, particle);
+        let slot = &mut self.slots[particle as usize];
+        slot.crossing = Time::NEVER;
+        if flight.is_at_rest() {
+            return;
+        }
+        let since = self.world.bodies[particle as usize].since;
+        let from = self.world.clock - since;
+        let mut first: Option<(Exit, usize)> = None;
+        for axis in 0..D {
+            let (low, high) = self.world.cells.faces(particle, axis);
+            if let Some(exit) = flight.exit(axis, low, high, from)
+                && first.is_none_or(|(earliest, _)| exit.after < earliest.after)
+            {
+                first = Some((exit, axis));
+            }
+        }
+        if let Some((exit, axis)) = first {
+            slot.crossing = (since + exit.after).max(self.world.clock);
+            slot.axis = axis as u8;
+            slot.upward = exit.upward;
+        }
+    }
+}

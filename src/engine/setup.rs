@@ -1,0 +1,259 @@
+//! Starting a simulation, and what is refused.
+
+use std::collections::BinaryHeap;
+
+use crate::engine::body::{Body, World, scale_at};
+use crate::engine::cells::Cells;
+use crate::engine::counts::{Counts, ModeCounts};
+use crate::engine::guards::Traces;
+use crate::engine::queue::EventQueue;
+use crate::engine::search::Slot;
+use crate::engine::settings::Settings;
+use crate::engine::simulation::Simulation;
+use crate::error::SetupError;
+use crate::model::{Boundary, Commands, MemoryOf, Model, SpinOf, Wall};
+use crate::particle::{Mode, Particle, ParticleId, WallId};
+use crate::time::Time;
+
+/// Overlap that is taken for rounding of the input, in d.
+const TOLERANCE: f64 = 1.0e-9;
+
+impl<M: Model<D>, const D: usize> Simulation<M, D> {
+    /// A simulation of these grains, with default settings.
+    ///
+    /// # Errors
+    ///
+    /// [`SetupError`] if a number is out of range, two grains overlap, a grain
+    /// reaches into a wall, or a period is shorter than two diameters.
+    pub fn new(model: M, particles: Vec<Particle<D>>) -> Result<Self, SetupError> {
+        Simulation::with_settings(model, particles, Settings::default())
+    }
+
+    /// A simulation of these grains.
+    ///
+    /// # Errors
+    ///
+    /// As [`Simulation::new`], and if a setting is out of range.
+    pub fn with_settings(
+        model: M,
+        particles: Vec<Particle<D>>,
+        settings: Settings,
+    ) -> Result<Self, SetupError> {
+        settings.guards.validate()?;
+        let horizon = settings.sleep_horizon;
+        if !(horizon > 0.0 && horizon.is_finite()) {
+            return Err(SetupError::Parameter {
+                field: "sleep_horizon",
+                value: horizon,
+                allowed: "a positive number is allowed",
+            });
+        }
+        let most = i32::MAX as usize;
+        if particles.len() > most {
+            return Err(SetupError::TooManyParticles {
+                count: particles.len(),
+                most,
+            });
+        }
+        let mut largest: f64 = 0.0;
+        for (place, particle) in particles.iter().enumerate() {
+            validate(ParticleId(place as u32), particle)?;
+            largest = largest.max(particle.diameter);
+        }
+        let scale = scale_at::<M, D>(&model, settings.start);
+        check_periods(&model, largest * scale)?;
+        let count = particles.len();
+        let cells = Cells::new(model.boundary(), &[], 1.0);
+        let mut simulation = Simulation {
+            settings,
+            world: World {
+                bodies: Vec::with_capacity(count),
+                masses: Vec::with_capacity(count),
+                cells,
+                clock: settings.start,
+                modes: ModeCounts::default(),
+                largest,
+            },
+            memories: vec![MemoryOf::<M, D>::default(); count],
+            spins: vec![SpinOf::<M, D>::default(); count],
+            slots: vec![Slot::EMPTY; count],
+            queue: EventQueue::new(count, settings.start),
+            alarms: BinaryHeap::new(),
+            alarm_count: 0,
+            traces: Traces::new(settings.guards.hold),
+            counts: Counts::default(),
+            deepest: 0.0,
+            speed_ceiling: 0.0,
+            ceiling_until: settings.start,
+            regrid_at: Time::NEVER,
+            collapse: None,
+            commands: Commands::default(),
+            scratch: Vec::new(),
+            model,
+        };
+        for particle in particles {
+            simulation.store(particle);
+        }
+        simulation.lay_grid();
+        for particle in 0..count as u32 {
+            simulation.refuse_contacts(particle)?;
+        }
+        for particle in 0..count as u32 {
+            simulation.tell_started(particle);
+        }
+        for particle in 0..count as u32 {
+            simulation.predict(particle);
+        }
+        simulation.deepest = 0.0;
+        Ok(simulation)
+    }
+
+    /// Adds a grain now; its id is the next one.
+    ///
+    /// # Errors
+    ///
+    /// [`SetupError`] as for [`Simulation::new`]; also if its diameter is larger
+    /// than all before, for which the grid was not made. The simulation is then
+    /// unchanged.
+    pub fn insert(&mut self, particle: Particle<D>) -> Result<ParticleId, SetupError> {
+        let index = self.world.bodies.len() as u32;
+        let id = ParticleId(index);
+        validate(id, &particle)?;
+        if particle.diameter > self.world.largest {
+            return Err(SetupError::Particle {
+                id,
+                field: "diameter",
+                value: particle.diameter,
+                allowed: "a grain inserted during a run may not be larger than all before",
+            });
+        }
+        self.store(particle);
+        let position = self.world.bodies[index as usize].position;
+        self.world.cells.add(&position);
+        self.memories.push(MemoryOf::<M, D>::default());
+        self.spins.push(SpinOf::<M, D>::default());
+        self.slots.push(Slot::EMPTY);
+        if let Err(error) = self.refuse_contacts(index) {
+            self.forget_last();
+            return Err(error);
+        }
+        self.note_speed(index);
+        self.tell_started(index);
+        self.predict(index);
+        Ok(id)
+    }
+
+    /// Stores a grain's state, wrapped into the primary cell.
+    fn store(&mut self, particle: Particle<D>) {
+        let scale = scale_at::<M, D>(&self.model, self.world.clock);
+        self.world.bodies.push(Body {
+            position: self.model.boundary().wrapped(&particle.position),
+            velocity: particle.velocity,
+            since: self.world.clock,
+            radius: 0.5 * particle.diameter / scale,
+            mode: particle.mode,
+            stamp: 0,
+        });
+        self.world.masses.push(particle.mass);
+        *self.world.modes.of(particle.mode) += 1;
+        self.traces.add();
+        self.queue.push_empty();
+    }
+
+    /// Takes back a grain that was stored but refused.
+    fn forget_last(&mut self) {
+        if let Some(body) = self.world.bodies.pop() {
+            *self.world.modes.of(body.mode) -= 1;
+        }
+        self.world.masses.pop();
+        self.world.cells.forget_last();
+        self.traces.forget_last();
+        self.queue.forget_last();
+        self.memories.pop();
+        self.spins.pop();
+        self.slots.pop();
+    }
+
+    /// Refuses a grain that overlaps another or reaches into a wall.
+    fn refuse_contacts(&self, particle: u32) -> Result<(), SetupError> {
+        let now = self.world.clock;
+        let one = self.world.particle_now(&self.model, particle);
+        for (place, wall) in self.model.boundary().walls().iter().enumerate() {
+            let depth = one.radius() - wall.distance(&one.position, now);
+            if depth > TOLERANCE {
+                return Err(SetupError::OutsideWall {
+                    id: ParticleId(particle),
+                    wall: WallId(place as u16),
+                    depth,
+                    tolerance: TOLERANCE,
+                });
+            }
+        }
+        let mut deepest: Option<(f64, u32)> = None;
+        self.world.cells.for_each_near(particle, 1, |found| {
+            let other = self.world.particle_now(&self.model, found.particle);
+            // Fixed grains may be built up of overlapping ones.
+            if one.mode == Mode::Fixed && other.mode == Mode::Fixed {
+                return;
+            }
+            let apart = self.world.displacement(&self.model, &one, &other).norm();
+            let depth = 0.5 * (one.diameter + other.diameter) - apart;
+            if depth > TOLERANCE && deepest.is_none_or(|(so_far, _)| depth > so_far) {
+                deepest = Some((depth, found.particle));
+            }
+        });
+        match deepest {
+            None => Ok(()),
+            Some((depth, other)) => Err(SetupError::Overlap {
+                first: ParticleId(particle.min(other)),
+                second: ParticleId(particle.max(other)),
+                depth,
+                tolerance: TOLERANCE,
+            }),
+        }
+    }
+}
+
+fn validate<const D: usize>(id: ParticleId, particle: &Particle<D>) -> Result<(), SetupError> {
+    let refuse = |field, value, allowed| {
+        Err(SetupError::Particle {
+            id,
+            field,
+            value,
+            allowed,
+        })
+    };
+    for &x in particle.position.iter() {
+        if !(x.abs() <= 1.0e9) {
+            return refuse("position", x, "coordinates between -1e9 and 1e9 are allowed");
+        }
+    }
+    for &v in particle.velocity.iter() {
+        if !v.is_finite() {
+            return refuse("velocity", v, "finite components are allowed");
+        }
+    }
+    let positive = |value: f64| value > 0.0 && value.is_finite();
+    if !positive(particle.diameter) {
+        return refuse("diameter", particle.diameter, "a positive number is allowed");
+    }
+    if !positive(particle.mass) {
+        return refuse("mass", particle.mass, "a positive number is allowed");
+    }
+    Ok(())
+}
+
+fn check_periods<M: Model<D>, const D: usize>(model: &M, largest: f64) -> Result<(), SetupError> {
+    for axis in 0..D {
+        if let Some(period) = model.boundary().period(axis)
+            && period.length < 2.0 * largest
+        {
+            return Err(SetupError::PeriodTooShort {
+                axis,
+                length: period.length,
+                least: 2.0 * largest,
+            });
+        }
+    }
+    Ok(())
+}

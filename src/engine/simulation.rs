@@ -1,0 +1,156 @@
+use std::cmp::Reverse;
+use std::collections::BinaryHeap;
+
+use crate::engine::body::{World, scale_at};
+use crate::engine::cells::{Cells, Found};
+use crate::engine::counts::{Counts, ModeCounts};
+use crate::engine::guards::Traces;
+use crate::engine::queue::EventQueue;
+use crate::engine::search::Slot;
+use crate::engine::settings::{Collapse, Settings};
+use crate::engine::transitions::Alarm;
+use crate::model::{Boundary, Commands, Dynamics, EventOf, Flight, MemoryOf, Model, SpinOf};
+use crate::particle::{Particle, ParticleId};
+use crate::time::Time;
+
+/// A simulation: a model, its grains and a clock.
+///
+/// The generic type names are: `M` the model, `D` the dimension.
+pub struct Simulation<M: Model<D>, const D: usize> {
+    pub(super) model: M,
+    pub(super) settings: Settings,
+    pub(super) world: World<D>,
+    pub(super) memories: Vec<MemoryOf<M, D>>,
+    pub(super) spins: Vec<SpinOf<M, D>>,
+    pub(super) slots: Vec<Slot>,
+    pub(super) queue: EventQueue,
+    pub(super) alarms: BinaryHeap<Reverse<Alarm<EventOf<M, D>>>>,
+    pub(super) alarm_count: u64,
+    pub(super) traces: Traces,
+    pub(super) counts: Counts,
+    /// Deepest overlap found at any event, in d.
+    pub(super) deepest: f64,
+    /// A bound on all speeds, good until an instant.
+    pub(super) speed_ceiling: f64,
+    pub(super) ceiling_until: Time,
+    /// When growing diameters will have outgrown the grid.
+    pub(super) regrid_at: Time,
+    pub(super) collapse: Option<Collapse>,
+    pub(super) commands: Commands<EventOf<M, D>>,
+    pub(super) scratch: Vec<Found<D>>,
+}
+
+impl<M: Model<D>, const D: usize> Simulation<M, D> {
+    /// The model.
+    #[must_use]
+    pub fn model(&self) -> &M {
+        &self.model
+    }
+
+    /// How the engine works, apart from the model.
+    #[must_use]
+    pub fn settings(&self) -> &Settings {
+        &self.settings
+    }
+
+    /// What the clock shows.
+    #[must_use]
+    pub fn time(&self) -> Time {
+        self.world.clock
+    }
+
+    /// What has happened so far.
+    #[must_use]
+    pub fn counts(&self) -> &Counts {
+        &self.counts
+    }
+
+    /// How many grains there are of each mode.
+    #[must_use]
+    pub fn mode_counts(&self) -> ModeCounts {
+        self.world.modes
+    }
+
+    /// A grain now, in the primary cell of periodic axes.
+    ///
+    /// # Panics
+    ///
+    /// If there is no such grain.
+    #[must_use]
+    pub fn particle(&self, id: ParticleId) -> Particle<D> {
+        let mut particle = self.world.particle_now(&self.model, id.0);
+        particle.position = self.model.boundary().wrapped(&particle.position);
+        particle
+    }
+
+    /// All grains now, by id, in the primary cell of periodic axes. Taking a
+    /// snapshot changes nothing.
+    #[must_use]
+    pub fn snapshot(&self) -> Vec<Particle<D>> {
+        (0..self.world.bodies.len() as u32)
+            .map(|id| self.particle(ParticleId(id)))
+            .collect()
+    }
+
+    /// What the policy remembers of a grain.
+    ///
+    /// # Panics
+    ///
+    /// If there is no such grain.
+    #[must_use]
+    pub fn memory(&self, id: ParticleId) -> &MemoryOf<M, D> {
+        &self.memories[id.index()]
+    }
+
+    /// Kinetic energy now, in mgd, of all grains but fixed ones.
+    #[must_use]
+    pub fn kinetic_energy(&self) -> f64 {
+        self.sum(Particle::kinetic_energy)
+    }
+
+    /// Potential energy now, in mgd, of all grains but fixed ones, counted from
+    /// the origin. Along a periodic axis it is that of the primary cell.
+    #[must_use]
+    pub fn potential_energy(&self) -> f64 {
+        let gravity = self.model.dynamics().gravity(self.world.clock);
+        self.sum(|particle| -particle.mass * gravity.dot(&particle.position))
+    }
+
+    /// The deepest overlap of any grain with a neighbour, in d, over all events
+    /// so far: looked for among all neighbours of an event's grains.
+    #[must_use]
+    pub fn max_overlap(&self) -> f64 {
+        self.deepest
+    }
+
+    fn sum(&self, of: impl Fn(&Particle<D>) -> f64) -> f64 {
+        (0..self.world.bodies.len() as u32)
+            .map(|id| self.particle(ParticleId(id)))
+            .filter(|particle| particle.mode != crate::particle::Mode::Fixed)
+            .map(|particle| of(&particle))
+            .sum()
+    }
+
+    /// Lays the cell grid for where the grains are now.
+    pub(super) fn lay_grid(&mut self) {
+        let now = self.world.clock;
+        let mut reach = self.world.largest * scale_at::<M, D>(&self.model, now);
+        self.regrid_at = Time::NEVER;
+        if M::Dynamics::GROWS {
+            // Room to grow, so that this is rarely done.
+            reach *= 1.1;
+            let rate = self.model.dynamics().growth_rate();
+            if rate > 0.0 {
+                let until = (reach / self.world.largest - 1.0) / rate;
+                self.regrid_at = Time::from_units(until).max(now);
+            }
+        }
+        let positions: Vec<_> = (0..self.world.bodies.len() as u32)
+            .map(|particle| {
+                let since = self.world.bodies[particle as usize].since;
+                self.world.flight(&self.model, particle).position(now - since)
+            })
+            .collect();
+        self.world.cells = Cells::new(self.model.boundary(), &positions, reach);
+    }
+}

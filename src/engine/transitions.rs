@@ -1,0 +1,270 @@
+//! Falling asleep, waking, and the policy's own events.
+
+use std::cmp::Ordering;
+use std::cmp::Reverse;
+
+use crate::engine::queue::{Key, Rank};
+use crate::engine::search::{Partner, Slot};
+use crate::engine::simulation::Simulation;
+use crate::engine::view::View;
+use crate::model::{
+    Dynamics, EventOf, Flight, Model, Observer, Occurrence, OccurrenceKind, Reason, Response,
+    StatePolicy, WakeCause, Waking,
+};
+use crate::particle::{Mode, ParticleId, Vector};
+use crate::time::Time;
+
+/// How long a bound on all speeds is kept before it is found anew, in √(d/g).
+const SPEED_WINDOW: f64 = 0.25;
+
+/// An event that the policy has asked for.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Alarm<E> {
+    pub(super) key: Key,
+    /// Tells apart what was asked for one grain and one instant: first asked,
+    /// first served.
+    pub(super) order: u64,
+    pub(super) event: E,
+}
+
+impl<E> PartialEq for Alarm<E> {
+    fn eq(&self, other: &Self) -> bool {
+        self.cmp(other) == Ordering::Equal
+    }
+}
+
+impl<E> Eq for Alarm<E> {}
+
+impl<E> PartialOrd for Alarm<E> {
+    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
+        Some(self.cmp(other))
+    }
+}
+
+impl<E> Ord for Alarm<E> {
+    fn cmp(&self, other: &Self) -> Ordering {
+        (self.key, self.order).cmp(&(other.key, other.order))
+    }
+}
+
+impl<M: Model<D>, const D: usize> Simulation<M, D> {
+    /// A grain falls asleep where it is now.
+    pub(super) fn fall_asleep<O: Observer<D>>(
+        &mut self,
+        particle: u32,
+        reason: Option<Reason>,
+        observer: &mut O,
+    ) {
+        let model = &self.model;
+        let now = self.world.clock;
+        let state = self.world.particle_now(model, particle);
+        model.state_policy().on_sleep(
+            ParticleId(particle),
+            &View {
+                model,
+                world: &self.world,
+            },
+            &mut self.memories[particle as usize],
+            &mut self.commands,
+        );
+        let rest = model.dynamics().ground_velocity(&state.position, now);
+        self.world
+            .write(model, particle, state.position, rest, Mode::Frozen);
+        self.slots[particle as usize] = Slot::EMPTY;
+        self.traces[particle as usize].partner = Partner::Nobody;
+        self.schedule();
+        self.counts.sleep += 1;
+        self.report(
+            &Occurrence {
+                time: now,
+                kind: OccurrenceKind::Sleep,
+                particle: ParticleId(particle),
+                other: None,
+                wall: None,
+                impact_speed: 0.0,
+                impulse: (rest - state.velocity) * state.mass,
+                velocity: rest,
+                other_velocity: Vector::zeros(),
+                elastic: false,
+                reason,
+            },
+            observer,
+        );
+        self.predict(particle);
+    }
+
+    /// The policy hears that a grain has woken.
+    pub(super) fn tell_woken(&mut self, particle: u32, cause: &WakeCause<D>) {
+        self.model.state_policy().on_wake(
+            ParticleId(particle),
+            cause,
+            &View {
+                model: &self.model,
+                world: &self.world,
+            },
+            &mut self.memories[particle as usize],
+            &mut self.commands,
+        );
+        self.schedule();
+    }
+
+    /// The policy hears of a grain for the first time.
+    pub(super) fn tell_started(&mut self, particle: u32) {
+        self.model.state_policy().on_start(
+            ParticleId(particle),
+            &View {
+                model: &self.model,
+                world: &self.world,
+            },
+            &mut self.memories[particle as usize],
+            &mut self.commands,
+        );
+        self.schedule();
+    }
+
+    /// Files what the policy has asked for.
+    fn schedule(&mut self) {
+        let known = self.world.bodies.len() as u32;
+        let now = self.world.clock;
+        for (id, after, event) in self.commands.drain() {
+            let time = now + after.max(0.0);
+            if id.0 >= known || !time.is_finite() {
+                continue;
+            }
+            self.alarm_count += 1;
+            self.alarms.push(Reverse(Alarm {
+                key: Key {
+                    time,
+                    rank: Rank::Policy,
+                    low: id.0,
+                    high: id.0,
+                },
+                order: self.alarm_count,
+                event,
+            }));
+        }
+    }
+
+    /// An event that the policy has asked for is due now.
+    pub(super) fn policy_event<O: Observer<D>>(
+        &mut self,
+        particle: u32,
+        event: EventOf<M, D>,
+        observer: &mut O,
+    ) {
+        let response = self.model.state_policy().on_event(
+            ParticleId(particle),
+            event,
+            &View {
+                model: &self.model,
+                world: &self.world,
+            },
+            &mut self.memories[particle as usize],
+            &mut self.commands,
+        );
+        self.schedule();
+        let mode = self.world.bodies[particle as usize].mode;
+        match response {
+            Response::Ignore => {}
+            Response::Keep => self.counts.check += 1,
+            Response::Sleep(reason) => {
+                self.counts.check += 1;
+                if mode.is_mobile() {
+                    self.fall_asleep(particle, Some(reason), observer);
+                }
+            }
+            Response::Wake(waking, reason) => {
+                self.counts.check += 1;
+                if mode == Mode::Frozen {
+                    self.wake_up(particle, &waking, reason, observer);
+                }
+            }
+        }
+    }
+
+    fn wake_up<O: Observer<D>>(
+        &mut self,
+        particle: u32,
+        waking: &Waking<D>,
+        reason: Reason,
+        observer: &mut O,
+    ) {
+        let before = self.world.particle_now(&self.model, particle);
+        let velocity = waking.velocity;
+        self.world.write(
+            &self.model,
+            particle,
+            before.position,
+            velocity,
+            Mode::Normal,
+        );
+        self.traces[particle as usize].partner = Partner::Nobody;
+        self.note_speed(particle);
+        self.counts.check_wake += 1;
+        self.tell_woken(particle, &WakeCause::Event);
+        self.report(
+            &Occurrence {
+                time: self.world.clock,
+                kind: OccurrenceKind::CheckWake,
+                particle: ParticleId(particle),
+                other: None,
+                wall: None,
+                impact_speed: 0.0,
+                impulse: (velocity - before.velocity) * before.mass,
+                velocity,
+                other_velocity: Vector::zeros(),
+                elastic: false,
+                reason: Some(reason),
+            },
+            observer,
+        );
+        self.predict(particle);
+    }
+
+    /// Keeps the bound on all speeds true after a grain's velocity has changed.
+    pub(super) fn note_speed(&mut self, particle: u32) {
+        let speed = self
+            .world
+            .flight(&self.model, particle)
+            .speed_bound(SPEED_WINDOW);
+        self.speed_ceiling = self.speed_ceiling.max(speed);
+    }
+
+    /// No grain whose centre is farther away than this can touch `particle`
+    /// within a time.
+    pub(super) fn reach(&mut self, particle: u32, within: f64) -> f64 {
+        let now = self.world.clock;
+        if within > SPEED_WINDOW || now + within > self.ceiling_until {
+            let ahead = within.max(SPEED_WINDOW);
+            self.speed_ceiling = self.fastest(ahead);
+            self.ceiling_until = if within > SPEED_WINDOW {
+                // Too high for everyday use: find it anew next time.
+                now
+            } else {
+                now + ahead
+            };
+        }
+        let own = self
+            .world
+            .flight(&self.model, particle)
+            .speed_bound(within);
+        let grown = self.world.largest * self.scale_at(now + within);
+        grown + (own + self.speed_ceiling) * within
+    }
+
+    /// A bound on the speeds of all grains from now on for a while.
+    fn fastest(&self, within: f64) -> f64 {
+        let now = self.world.clock;
+        (0..self.world.bodies.len() as u32)
+            .map(|particle| {
+                let since = self.world.bodies[particle as usize].since;
+                let flight = self.world.flight(&self.model, particle);
+                flight.advanced(now - since).speed_bound(within)
+            })
+            .fold(0.0, f64::max)
+    }
+
+    fn scale_at(&self, time: Time) -> f64 {
+        crate::engine::body::scale_at::<M, D>(&self.model, time)
+    }
+}

@@ -1,0 +1,5 @@
+//! Built-in observers.
+
+mod hash;
+
+pub use hash::TrajectoryHash;

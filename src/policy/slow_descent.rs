@@ -1,0 +1,392 @@
+use serde::{Deserialize, Serialize};
+
+use crate::model::{
+    Commands, Impact, Obstacle, Place, Reason, Response, SleepDecision, StatePolicy, Surroundings,
+    WakeCause, WakeDecision, Waking,
+};
+use crate::particle::{Mode, ParticleId, Vector};
+use crate::policy::supports::{CheckDue, SelfCheck, Supports};
+use crate::time::Time;
+
+/// What becomes of the energy that a grain loses when it falls asleep, if it
+/// is woken soon.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "program", derive(schemars::JsonSchema))]
+#[serde(rename_all = "snake_case")]
+pub enum EnergyStore {
+    /// It is lost.
+    Off,
+    /// The grain gets its velocity back before the collision is resolved.
+    #[default]
+    VelocityBefore,
+    /// The grain gets the energy added after the collision.
+    EnergyAfter,
+}
+
+/// Which velocity is stored when a grain falls asleep.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "program", derive(schemars::JsonSchema))]
+#[serde(rename_all = "snake_case")]
+pub enum StoreAt {
+    /// The one at the instant it freezes.
+    #[default]
+    Freezing,
+    /// The one just after the collision that decided it.
+    Deciding,
+}
+
+/// Which speed the sleep test reads.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "program", derive(schemars::JsonSchema))]
+#[serde(rename_all = "snake_case")]
+pub enum SpeedRead {
+    /// The one with which the grain arrives.
+    #[default]
+    Arriving,
+    /// The one with which it leaves.
+    Leaving,
+}
+
+/// Which velocity has to point down.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "program", derive(schemars::JsonSchema))]
+#[serde(rename_all = "snake_case")]
+pub enum DescentRead {
+    /// The one with which the grain arrives. Read on the leaving one, a ball on
+    /// a floor never sleeps.
+    #[default]
+    Arriving,
+    /// The one with which it leaves.
+    Leaving,
+    /// Both.
+    Both,
+}
+
+/// With which earlier collision the speed is compared.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "program", derive(schemars::JsonSchema))]
+#[serde(rename_all = "snake_case")]
+pub enum Comparison {
+    /// The grain's previous one, with anything.
+    #[default]
+    AnyCollision,
+    /// Its previous one with a frozen or fixed grain or a supporting wall.
+    StaticCollisions,
+    /// None: being slow is enough.
+    None,
+}
+
+/// Which speed of a hit has to exceed V_wakeup.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "program", derive(schemars::JsonSchema))]
+#[serde(rename_all = "snake_case")]
+pub enum WakeRead {
+    /// The closing speed along the normal.
+    #[default]
+    Normal,
+    /// The whole relative speed.
+    Relative,
+}
+
+/// The paper's criteria (section 2), and its self-check (section 4).
+///
+/// A grain falls asleep, half-way to its next collision, if at a collision with
+/// a frozen or fixed grain it is going down and its speed is below V_sleep and
+/// below that at its previous collision. A frozen grain wakes if it is hit
+/// with a normal speed above V_wakeup, or if its self-check finds that its
+/// support is lost. If it wakes within 2 V_sleep/((1 − α_frozen) g) of falling
+/// asleep it gets back the velocity it had.
+///
+/// The defaults are the paper's as far as it decides; every other reading has a
+/// field.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SlowDescent {
+    /// V_sleep, in √(gd).
+    pub sleep_speed: f64,
+    /// V_wakeup, in √(gd); infinite if no hit ever wakes.
+    pub wake_speed: f64,
+    /// α_frozen, which only sets how long energy is stored.
+    pub frozen_restitution: f64,
+    /// What becomes of the energy of a sleeper that is soon woken.
+    pub energy_store: EnergyStore,
+    /// Which velocity is stored.
+    pub store_at: StoreAt,
+    /// How long it is stored, in √(d/g), instead of
+    /// 2 V_sleep/((1 − α_frozen) g).
+    pub store_time: Option<f64>,
+    /// Which speed the sleep test reads.
+    pub speed_read: SpeedRead,
+    /// Which velocity has to point down.
+    pub descent_read: DescentRead,
+    /// With which earlier collision the speed is compared.
+    pub comparison: Comparison,
+    /// Which speed of a hit counts.
+    pub wake_read: WakeRead,
+    /// Where a grain falls asleep.
+    pub place: Place,
+    /// Whether walls support grains as frozen ones do.
+    pub wall_supports: bool,
+    /// The self-check of supports; none if frozen grains never check.
+    pub self_check: Option<SelfCheck>,
+    /// Keep the speed at the last collision through sleep.
+    pub keep_history: bool,
+}
+
+impl Default for SlowDescent {
+    /// V_sleep = V_wakeup = 0.1 √(gd), α_frozen = 0.4, no self-check: the
+    /// paper's deposition.
+    fn default() -> Self {
+        SlowDescent {
+            sleep_speed: 0.1,
+            wake_speed: 0.1,
+            frozen_restitution: 0.4,
+            energy_store: EnergyStore::default(),
+            store_at: StoreAt::default(),
+            store_time: None,
+            speed_read: SpeedRead::default(),
+            descent_read: DescentRead::default(),
+            comparison: Comparison::default(),
+            wake_read: WakeRead::default(),
+            place: Place::HalfWay,
+            wall_supports: false,
+            self_check: None,
+            keep_history: false,
+        }
+    }
+}
+
+impl SlowDescent {
+    /// The paper's criteria with V_sleep = V_wakeup = `threshold`, in √(gd).
+    #[must_use]
+    pub fn with_threshold(threshold: f64) -> Self {
+        SlowDescent {
+            sleep_speed: threshold,
+            wake_speed: threshold,
+            ..SlowDescent::default()
+        }
+    }
+
+    /// How long the energy of a sleeper is stored, in √(d/g).
+    fn store_time(&self, gravity: f64) -> f64 {
+        self.store_time
+            .unwrap_or(2.0 * self.sleep_speed / ((1.0 - self.frozen_restitution) * gravity))
+    }
+
+    /// What a sleeper gets back if it wakes now.
+    fn given_back<const D: usize>(
+        &self,
+        memory: &Remembered<D>,
+        now: Time,
+        gravity: &Vector<D>,
+        ground: Vector<D>,
+        mass: f64,
+    ) -> Waking<D> {
+        let still_stored = memory
+            .asleep
+            .filter(|asleep| now - asleep.since < self.store_time(gravity.norm()));
+        match (still_stored, self.energy_store) {
+            (Some(asleep), EnergyStore::VelocityBefore) => {
+                Waking::with_velocity(ground + asleep.velocity)
+            }
+            (Some(asleep), EnergyStore::EnergyAfter) => Waking {
+                velocity: ground,
+                extra_energy: 0.5 * mass * asleep.velocity.norm_squared(),
+            },
+            _ => Waking::with_velocity(ground),
+        }
+    }
+
+    fn is_on_support<const D: usize>(&self, impact: &Impact<D>) -> bool {
+        impact.is_on_static() || (self.wall_supports && impact.is_on_wall())
+    }
+}
+
+/// What a sleeper has lost, and when.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(bound = "")]
+struct Asleep<const D: usize> {
+    velocity: Vector<D>,
+    since: Time,
+}
+
+/// What [`SlowDescent`] remembers of a grain.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(bound = "")]
+pub struct Remembered<const D: usize> {
+    /// Speed at the last collision that counts, relative to the ground, in
+    /// √(gd).
+    previous_speed: Option<f64>,
+    /// Velocity after the collision that decided to fall asleep.
+    deciding: Option<Vector<D>>,
+    asleep: Option<Asleep<D>>,
+    supports: Supports,
+}
+
+impl<const D: usize> StatePolicy<D> for SlowDescent {
+    type Memory = Remembered<D>;
+    type Event = CheckDue;
+
+    fn should_sleep<S: Surroundings<D>>(
+        &self,
+        impact: &Impact<D>,
+        after: Vector<D>,
+        _near: &S,
+        memory: &mut Remembered<D>,
+    ) -> SleepDecision {
+        let arriving = impact.particle.velocity - impact.ground_velocity;
+        let leaving = after - impact.ground_velocity;
+        let speed = match self.speed_read {
+            SpeedRead::Arriving => arriving.norm(),
+            SpeedRead::Leaving => leaving.norm(),
+        };
+        let on_support = self.is_on_support(impact);
+        let previous = memory.previous_speed;
+        if on_support || self.comparison == Comparison::AnyCollision {
+            memory.previous_speed = Some(speed);
+        }
+        if !on_support {
+            return SleepDecision::Stay(Reason::new("on a static grain", 0.0, 1.0));
+        }
+        let descent = match self.descent_read {
+            DescentRead::Arriving => arriving.dot(&impact.gravity),
+            DescentRead::Leaving => leaving.dot(&impact.gravity),
+            DescentRead::Both => arriving
+                .dot(&impact.gravity)
+                .min(leaving.dot(&impact.gravity)),
+        };
+        if descent <= 0.0 {
+            return SleepDecision::Stay(Reason::new("going down", descent, 0.0));
+        }
+        let slow = Reason::new("speed below V_sleep", speed, self.sleep_speed);
+        if speed >= self.sleep_speed {
+            return SleepDecision::Stay(slow);
+        }
+        if self.comparison != Comparison::None {
+            let before = previous.unwrap_or(0.0);
+            if speed >= before {
+                let slower = Reason::new("slower than at the previous collision", speed, before);
+                return SleepDecision::Stay(slower);
+            }
+        }
+        memory.deciding = Some(leaving);
+        SleepDecision::Sleep(self.place, slow)
+    }
+
+    fn should_wake<S: Surroundings<D>>(
+        &self,
+        impact: &Impact<D>,
+        _near: &S,
+        struck: &Remembered<D>,
+    ) -> WakeDecision<D> {
+        let speed = match self.wake_read {
+            WakeRead::Normal => impact.closing_speed(),
+            WakeRead::Relative => impact.relative_velocity().norm(),
+        };
+        let reason = Reason::new("hit faster than V_wakeup", speed, self.wake_speed);
+        if speed <= self.wake_speed {
+            return WakeDecision::Stay(reason);
+        }
+        let mass = match &impact.obstacle {
+            Obstacle::Particle { particle, .. } => particle.mass,
+            Obstacle::Wall { .. } => f64::INFINITY,
+        };
+        let ground = impact.obstacle_velocity();
+        let waking = self.given_back(struck, impact.time, &impact.gravity, ground, mass);
+        WakeDecision::Wake(waking, reason)
+    }
+
+    fn on_start<S: Surroundings<D>>(
+        &self,
+        id: ParticleId,
+        near: &S,
+        memory: &mut Remembered<D>,
+        commands: &mut Commands<CheckDue>,
+    ) {
+        if let Some(check) = &self.self_check
+            && near.particle(id).mode == Mode::Frozen
+        {
+            memory.supports.record(check, self.wall_supports, id, near);
+            let wait = check.first_wait(id, near.time());
+            commands.schedule(id, wait, memory.supports.next_check());
+        }
+    }
+
+    fn on_sleep<S: Surroundings<D>>(
+        &self,
+        id: ParticleId,
+        near: &S,
+        memory: &mut Remembered<D>,
+        commands: &mut Commands<CheckDue>,
+    ) {
+        let velocity = match (self.store_at, memory.deciding) {
+            (StoreAt::Deciding, Some(velocity)) => velocity,
+            _ => near.particle(id).velocity,
+        };
+        memory.asleep = Some(Asleep {
+            velocity,
+            since: near.time(),
+        });
+        if !self.keep_history {
+            memory.previous_speed = None;
+        }
+        if let Some(check) = &self.self_check {
+            memory.supports.record(check, self.wall_supports, id, near);
+            let wait = check.wait(near.time());
+            commands.schedule(id, wait, memory.supports.next_check());
+        }
+    }
+
+    fn on_wake<S: Surroundings<D>>(
+        &self,
+        _id: ParticleId,
+        cause: &WakeCause<D>,
+        _near: &S,
+        memory: &mut Remembered<D>,
+        _commands: &mut Commands<CheckDue>,
+    ) {
+        memory.asleep = None;
+        memory.supports.forget();
+        match cause {
+            // Its first contact cannot put it back to sleep.
+            WakeCause::Event => memory.previous_speed = Some(0.0),
+            WakeCause::Hit { impact, after } => {
+                if self.comparison == Comparison::AnyCollision {
+                    memory.previous_speed = Some(match self.speed_read {
+                        SpeedRead::Arriving => impact.arriving_speed(),
+                        SpeedRead::Leaving => (after - impact.ground_velocity).norm(),
+                    });
+                }
+            }
+        }
+    }
+
+    fn on_event<S: Surroundings<D>>(
+        &self,
+        id: ParticleId,
+        event: CheckDue,
+        near: &S,
+        memory: &mut Remembered<D>,
+        commands: &mut Commands<CheckDue>,
+    ) -> Response<D> {
+        let Some(check) = &self.self_check else {
+            return Response::Ignore;
+        };
+        let grain = near.particle(id);
+        if grain.mode != Mode::Frozen || !memory.supports.is_current(event) {
+            return Response::Ignore;
+        }
+        match memory.supports.verify(check, self.wall_supports, id, near) {
+            Ok(()) => {
+                let wait = check.wait(near.time());
+                commands.schedule(id, wait, memory.supports.next_check());
+                Response::Keep
+            }
+            Err(reason) => {
+                let gravity = near.gravity();
+                let ground = grain.velocity;
+                let waking = self.given_back(memory, near.time(), &gravity, ground, grain.mass);
+                Response::Wake(waking, reason)
+            }
+        }
+    }
+}

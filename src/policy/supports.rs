@@ -1,0 +1,204 @@
+//! The paper's self-check (section 4): are those that held a grain up still
+//! there?
+
+use rand::{RngExt, SeedableRng};
+use rand_chacha::ChaCha8Rng;
+use serde::{Deserialize, Serialize};
+
+use crate::model::{Reason, Surroundings};
+use crate::particle::ParticleId;
+use crate::time::Time;
+
+/// A wall within this gap below a grain supports it, in d.
+const WALL_RANGE: f64 = 0.05;
+
+/// When grains check.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "program", derive(schemars::JsonSchema))]
+#[serde(rename_all = "snake_case")]
+pub enum Phase {
+    /// τ_check after falling asleep, and so on; grains that start frozen begin
+    /// at times spread at random over one interval, by this seed and their id.
+    Spread {
+        /// The seed.
+        seed: u64,
+    },
+    /// τ_check after falling asleep, or after the start, and so on.
+    Own,
+    /// At the multiples of τ_check.
+    Global,
+}
+
+/// The self-check of supports.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SelfCheck {
+    /// τ_check, in √(d/g).
+    pub interval: f64,
+    /// Grains nearer than this times their distance at contact may be supports;
+    /// 1.05 in the paper.
+    pub support_range: f64,
+    /// Whether normal grains above count, as in an arch.
+    pub support_normals: bool,
+    /// When grains check.
+    pub phase: Phase,
+    /// Whether a grain without any support wakes.
+    pub unsupported_wakes: bool,
+}
+
+impl Default for SelfCheck {
+    /// The paper's: every 0.1 √(d/g), neighbours nearer than 1.05.
+    fn default() -> Self {
+        SelfCheck {
+            interval: 0.1,
+            support_range: 1.05,
+            support_normals: true,
+            phase: Phase::Spread { seed: 0 },
+            unsupported_wakes: true,
+        }
+    }
+}
+
+impl SelfCheck {
+    /// How long until the first check of a grain that starts frozen.
+    pub(super) fn first_wait(&self, id: ParticleId, now: Time) -> f64 {
+        match self.phase {
+            Phase::Spread { seed } => {
+                let mut generator = ChaCha8Rng::seed_from_u64(seed);
+                generator.set_stream(u64::from(id.0));
+                self.interval * generator.random::<f64>()
+            }
+            Phase::Own | Phase::Global => self.wait(now),
+        }
+    }
+
+    /// How long until the next check.
+    pub(super) fn wait(&self, now: Time) -> f64 {
+        match self.phase {
+            Phase::Spread { .. } | Phase::Own => self.interval,
+            Phase::Global => {
+                let passed = libm::floor(now.units() / self.interval);
+                let next = Time::from_units((passed + 1.0) * self.interval);
+                if next > now {
+                    next - now
+                } else {
+                    Time::from_units((passed + 2.0) * self.interval) - now
+                }
+            }
+        }
+    }
+}
+
+/// The event "grain, check yourself". It carries the number of the sleep it was
+/// made in, so that it is void after a waking.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct CheckDue {
+    sleep: u32,
+}
+
+/// Who held a grain up when it fell asleep.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub(super) struct Supports {
+    /// Counts the sleeps.
+    sleep: u32,
+    /// Frozen or fixed grains below.
+    below: Vec<ParticleId>,
+    /// Normal grains above.
+    above: Vec<ParticleId>,
+    /// Number of walls below.
+    walls: u32,
+}
+
+impl Supports {
+    pub(super) fn next_check(&self) -> CheckDue {
+        CheckDue { sleep: self.sleep }
+    }
+
+    pub(super) fn is_current(&self, event: CheckDue) -> bool {
+        event.sleep == self.sleep
+    }
+
+    /// Forgets them, and makes checks that are still due void.
+    pub(super) fn forget(&mut self) {
+        self.sleep = self.sleep.wrapping_add(1);
+        self.below.clear();
+        self.above.clear();
+        self.walls = 0;
+    }
+
+    /// Notes who holds a grain up now.
+    pub(super) fn record<const D: usize, S: Surroundings<D>>(
+        &mut self,
+        check: &SelfCheck,
+        walls_count: bool,
+        id: ParticleId,
+        near: &S,
+    ) {
+        self.forget();
+        let gravity = near.gravity();
+        let (below, above) = (&mut self.below, &mut self.above);
+        near.for_each_neighbour(id, check.support_range, |other| {
+            let lower = other.offset.dot(&gravity);
+            if other.mode.is_static() {
+                if lower > 0.0 {
+                    below.push(other.id);
+                }
+            } else if check.support_normals && lower < 0.0 {
+                above.push(other.id);
+            }
+        });
+        below.sort_unstable();
+        above.sort_unstable();
+        if walls_count {
+            self.walls = walls_below(id, near);
+        }
+    }
+
+    /// Whether all of them still hold the grain up.
+    pub(super) fn verify<const D: usize, S: Surroundings<D>>(
+        &self,
+        check: &SelfCheck,
+        walls_count: bool,
+        id: ParticleId,
+        near: &S,
+    ) -> Result<(), Reason> {
+        let wanted = self.below.len() + self.above.len() + self.walls as usize;
+        if wanted == 0 {
+            return if check.unsupported_wakes {
+                Err(Reason::new("has a support", 0.0, 1.0))
+            } else {
+                Ok(())
+            };
+        }
+        let gravity = near.gravity();
+        let mut still = 0;
+        near.for_each_neighbour(id, check.support_range, |other| {
+            let lower = other.offset.dot(&gravity);
+            let holds = self.below.binary_search(&other.id).is_ok()
+                && other.mode.is_static()
+                && lower > 0.0;
+            let braces = self.above.binary_search(&other.id).is_ok();
+            still += usize::from(holds || braces);
+        });
+        if walls_count {
+            still += walls_below(id, near).min(self.walls) as usize;
+        }
+        if still == wanted {
+            Ok(())
+        } else {
+            Err(Reason::new(
+                "all supports are still there",
+                still as f64,
+                wanted as f64,
+            ))
+        }
+    }
+}
+
+fn walls_below<const D: usize, S: Surroundings<D>>(id: ParticleId, near: &S) -> u32 {
+    let gravity = near.gravity();
+    let mut count = 0;
+    near.for_each_wall(id, WALL_RANGE, |wall| {
+        count += u32::from(wall.normal.dot(&gravity) < 0.0);
+    });
+    count
+}
