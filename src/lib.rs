@@ -6,6 +6,7 @@ pub mod dynamics;
 pub mod error;
 pub mod model;
 pub mod particle;
+pub mod predict;
 pub mod time;
 
 pub use error::SetupError;
