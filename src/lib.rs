@@ -9,6 +9,7 @@ pub mod model;
 pub mod observe;
 pub mod particle;
 pub mod policy;
+pub mod predict;
 pub mod time;
 
 pub use error::SetupError;

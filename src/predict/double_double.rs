@@ -1,0 +1,224 @@
+use std::ops::{Add, Div, Mul, Neg, Sub};
+
+use super::Real;
+
+/// A number as the unevaluated sum of two `f64`, about 32 decimal digits.
+///
+/// Sums and products after Dekker 1971, doi:10.1007/BF01397083, without fused
+/// multiply-add, so that every machine gives the same bits. Relative error of
+/// an operation below 2⁻¹⁰⁰; products are right while their parts neither
+/// overflow nor vanish, that is for sizes of 10⁻¹⁴⁰ … 10¹⁴⁰.
+///
+/// ```
+/// use grainfall::predict::{DoubleDouble, Real};
+///
+/// let third = DoubleDouble::from_f64(1.0) / DoubleDouble::from_f64(3.0);
+/// let rest = third * DoubleDouble::from_f64(3.0) - DoubleDouble::from_f64(1.0);
+/// assert!(rest.abs() < DoubleDouble::from_f64(1.0e-31));
+/// ```
+#[derive(Clone, Copy, Debug, PartialEq, PartialOrd)]
+pub struct DoubleDouble {
+    /// The nearest `f64`; ordered first, so the derived comparison is the
+    /// comparison of numbers.
+    high: f64,
+    /// What is left, at most half a last digit of `high`.
+    low: f64,
+}
+
+/// a + b exactly.
+#[inline]
+fn two_sum(a: f64, b: f64) -> (f64, f64) {
+    let sum = a + b;
+    let part = sum - a;
+    (sum, (a - (sum - part)) + (b - part))
+}
+
+/// a + b exactly, if |a| ≥ |b|.
+#[inline]
+fn quick_two_sum(a: f64, b: f64) -> (f64, f64) {
+    let sum = a + b;
+    (sum, b - (sum - a))
+}
+
+/// The upper 26 digits and the rest.
+#[inline]
+fn split(a: f64) -> (f64, f64) {
+    let shifted = 134_217_729.0 * a;
+    let high = shifted - (shifted - a);
+    (high, a - high)
+}
+
+/// a · b exactly.
+#[inline]
+fn two_product(a: f64, b: f64) -> (f64, f64) {
+    let product = a * b;
+    let (a_high, a_low) = split(a);
+    let (b_high, b_low) = split(b);
+    let error = ((a_high * b_high - product) + a_high * b_low + a_low * b_high) + a_low * b_low;
+    (product, error)
+}
+
+impl DoubleDouble {
+    /// Normalised sum; infinities keep a rest of 0, or they would become NaN.
+    #[inline]
+    fn renormalised(high: f64, low: f64) -> Self {
+        if !high.is_finite() {
+            return DoubleDouble { high, low: 0.0 };
+        }
+        let (high, low) = quick_two_sum(high, low);
+        DoubleDouble { high, low }
+    }
+}
+
+impl Add for DoubleDouble {
+    type Output = Self;
+
+    #[inline]
+    fn add(self, other: Self) -> Self {
+        let (high, high_error) = two_sum(self.high, other.high);
+        let (low, low_error) = two_sum(self.low, other.low);
+        let (high, error) = quick_two_sum(high, high_error + low);
+        Self::renormalised(high, error + low_error)
+    }
+}
+
+impl Neg for DoubleDouble {
+    type Output = Self;
+
+    #[inline]
+    fn neg(self) -> Self {
+        DoubleDouble {
+            high: -self.high,
+            low: -self.low,
+        }
+    }
+}
+
+impl Sub for DoubleDouble {
+    type Output = Self;
+
+    #[inline]
+    fn sub(self, other: Self) -> Self {
+        self + -other
+    }
+}
+
+impl Mul for DoubleDouble {
+    type Output = Self;
+
+    #[inline]
+    fn mul(self, other: Self) -> Self {
+        let (high, error) = two_product(self.high, other.high);
+        Self::renormalised(
+            high,
+            error + (self.high * other.low + self.low * other.high),
+        )
+    }
+}
+
+impl Div for DoubleDouble {
+    type Output = Self;
+
+    /// Long division: three digits in base 2⁵³.
+    #[inline]
+    fn div(self, other: Self) -> Self {
+        let first = self.high / other.high;
+        if !first.is_finite() || other.high.is_infinite() {
+            return Self::from_f64(first);
+        }
+        let rest = self - other * Self::from_f64(first);
+        let second = rest.high / other.high;
+        let rest = rest - other * Self::from_f64(second);
+        let third = rest.high / other.high;
+        let (high, low) = quick_two_sum(first, second);
+        Self::renormalised(high, low) + Self::from_f64(third)
+    }
+}
+
+impl Real for DoubleDouble {
+    const ZERO: Self = DoubleDouble {
+        high: 0.0,
+        low: 0.0,
+    };
+    const INFINITY: Self = DoubleDouble {
+        high: f64::INFINITY,
+        low: 0.0,
+    };
+    // 2⁻¹⁰⁰.
+    const UNIT_ROUNDOFF: f64 = 7.888_609_052_210_118e-31;
+
+    #[inline]
+    fn from_f64(value: f64) -> Self {
+        DoubleDouble {
+            high: value,
+            low: 0.0,
+        }
+    }
+
+    #[inline]
+    fn to_f64(self) -> f64 {
+        self.high
+    }
+
+    /// One Newton step from the root of the leading part, which is right to 53
+    /// digits.
+    #[inline]
+    fn sqrt(self) -> Self {
+        if self.high <= 0.0 || self.high.is_infinite() {
+            return Self::from_f64(self.high.sqrt());
+        }
+        let root = Self::from_f64(self.high.sqrt());
+        let rest = self - root * root;
+        root + Self::from_f64(rest.high / (2.0 * root.high))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    /// The number as an integer multiple of 2⁻²⁰⁰ would need big integers; exact
+    /// integers below 2¹⁰⁶ are enough to catch a wrong digit.
+    fn from_integer(value: i128) -> DoubleDouble {
+        let high = value as f64;
+        let low = (value - high as i128) as f64;
+        DoubleDouble::renormalised(high, low)
+    }
+
+    fn to_integer(value: DoubleDouble) -> i128 {
+        value.high as i128 + value.low as i128
+    }
+
+    proptest! {
+        #[test]
+        fn sums_of_integers_are_exact(a in -(1i128 << 104)..1i128 << 104, b in -(1i128 << 104)..1i128 << 104) {
+            prop_assert_eq!(to_integer(from_integer(a) + from_integer(b)), a + b);
+            prop_assert_eq!(to_integer(from_integer(a) - from_integer(b)), a - b);
+        }
+
+        #[test]
+        fn products_of_integers_are_exact(a in -(1i128 << 50)..1i128 << 50, b in -(1i128 << 54)..1i128 << 54) {
+            prop_assert_eq!(to_integer(from_integer(a) * from_integer(b)), a * b);
+        }
+
+        #[test]
+        fn quotients_and_roots_undo_products(a in 1i128..1i128 << 50, b in 1i128..1i128 << 52) {
+            let (a, b) = (from_integer(a), from_integer(b));
+            let ratio = a / b;
+            let bound = a.times(DoubleDouble::UNIT_ROUNDOFF);
+            prop_assert!((ratio * b - a).abs() <= bound);
+            let root = ratio.sqrt();
+            prop_assert!((root * root - ratio).abs() <= ratio.times(4.0 * DoubleDouble::UNIT_ROUNDOFF));
+        }
+    }
+
+    #[test]
+    fn infinity_compares_and_survives() {
+        let one = DoubleDouble::from_f64(1.0);
+        assert!(one < DoubleDouble::INFINITY);
+        assert_eq!(one + DoubleDouble::INFINITY, DoubleDouble::INFINITY);
+        assert_eq!(one / DoubleDouble::ZERO, DoubleDouble::INFINITY);
+        assert_eq!(one / DoubleDouble::INFINITY, DoubleDouble::ZERO);
+    }
+}

@@ -1,0 +1,129 @@
+//! Grains and walls.
+
+use super::descent::{first_root, quadratic_descent};
+use super::forecast;
+use crate::model::{Encounter, Forecast, PolynomialFlight, Wall};
+use crate::particle::Vector;
+
+/// Steps before a curved wall's question is put off.
+const MOST_STEPS: usize = 100;
+/// Rounding of a distance, relative to the numbers it is computed from.
+const ROUNDING: f64 = 8.0 * f64::EPSILON;
+
+/// A flat wall at rest: the gap is a polynomial of degree two.
+#[inline]
+pub(super) fn plane<const D: usize, F: PolynomialFlight<D>, W: Wall<D>>(
+    encounter: &Encounter<'_, D, F, W>,
+    normal: &Vector<D>,
+    offset: f64,
+) -> Forecast {
+    let flight = &encounter.flight;
+    let c0 = normal.dot(&flight.position(0.0)) - offset - encounter.radius;
+    let c1 = normal.dot(&flight.velocity(0.0)) - encounter.growth;
+    let c2 = if F::ACCELERATES {
+        0.5 * normal.dot(&flight.acceleration())
+    } else {
+        0.0
+    };
+    let forecast = forecast(quadratic_descent(
+        [c0, c1, c2],
+        encounter.touching,
+        encounter.horizon,
+    ));
+    match forecast {
+        // Numbers so large that products overflow.
+        Forecast::Contact(time) if time.is_nan() => Forecast::Never,
+        other => other,
+    }
+}
+
+/// Any wall, from its distance alone.
+///
+/// Far from it a grain cannot touch before it has covered the gap. Near it the
+/// gap φ obeys φ″ ≥ −B, with B from the wall's curvature and the accelerations, and
+/// φ + φ′ s − B s²/2 lies below it. The longer of the two steps is taken; neither
+/// passes a contact.
+pub(super) fn general<const D: usize, F: PolynomialFlight<D>, W: Wall<D>>(
+    encounter: &Encounter<'_, D, F, W>,
+    curvature: f64,
+    wall_speed: f64,
+    wall_acceleration: f64,
+) -> Forecast {
+    let Encounter {
+        flight,
+        wall,
+        since,
+        growth,
+        horizon,
+        ..
+    } = *encounter;
+    let acceleration = flight.acceleration().norm();
+    let mut t = 0.0;
+    for count in 0..MOST_STEPS {
+        let (position, velocity, now) = (flight.position(t), flight.velocity(t), since + t);
+        let radius = encounter.radius + growth * t;
+        let distance = wall.distance(&position, now);
+        let normal = wall.normal(&position, now);
+        let opening = normal.dot(&(velocity - wall.velocity(&position, now))) - growth;
+        let rounding = ROUNDING * (position.norm() + distance.abs() + radius);
+        let gap = if count == 0 && encounter.touching {
+            0.0
+        } else {
+            distance - radius
+        };
+        if gap <= rounding && opening < 0.0 {
+            return Forecast::Contact(t);
+        }
+        let speed = velocity.norm() + wall_speed;
+        let mut advance = covered(gap, speed + growth.max(0.0), acceleration);
+        // The curvature is known out to one diameter; beyond 1 d it may grow
+        // inwards like that of parallel surfaces.
+        let known = encounter.radius.max(0.5) * 2.0;
+        let sharper = 1.0 - curvature * (known - 1.0);
+        if distance < known && (sharper > 0.5 || gap <= rounding) {
+            let margin = known - distance;
+            // Within it the grain is no faster than that.
+            let fastest_squared = speed * speed + 2.0 * acceleration * margin;
+            let bound =
+                acceleration + wall_acceleration + curvature / sharper.max(0.5) * fastest_squared;
+            let step = minorant_step(gap, opening, bound, rounding, radius / speed);
+            advance = advance.max(step.min(covered(margin, speed, acceleration)));
+        }
+        t += advance;
+        if !(t < f64::MAX) || t > horizon {
+            return Forecast::Never;
+        }
+    }
+    Forecast::AskAgain(t.max(f64::MIN_POSITIVE))
+}
+
+/// The time in which something of this speed and acceleration covers a length.
+fn covered(length: f64, speed: f64, acceleration: f64) -> f64 {
+    if length > 0.0 {
+        2.0 * length / (speed + (speed * speed + 2.0 * acceleration * length).sqrt())
+    } else {
+        0.0
+    }
+}
+
+/// A step that passes no contact if φ″ ≥ −`bound`. `pass` is the time in which
+/// the grain moves by its radius.
+fn minorant_step(gap: f64, opening: f64, bound: f64, rounding: f64, pass: f64) -> f64 {
+    if !bound.is_finite() {
+        // A corner: get away from it if it touches.
+        return if gap <= rounding { 1.0e-6 * pass } else { 0.0 };
+    }
+    if opening < 0.0 {
+        return first_root(gap, opening, -0.5 * bound);
+    }
+    // Over a time so short that curvature changes the gap by less than its
+    // rounding, an opening gap stays open.
+    let least = (rounding / bound).sqrt();
+    let step = if gap < -rounding {
+        // Overlapping and opening: up to where it might begin to close.
+        opening / bound
+    } else {
+        first_root(gap.max(0.0), opening, -0.5 * bound)
+    };
+    step.max(least)
+}
