@@ -163,6 +163,12 @@ fn thrown_exit(x: f64, v: f64, g: f64, low: f64, high: f64, from: f64) -> Exit {
             };
         }
     }
+    if low.is_infinite() {
+        return Exit {
+            after: f64::INFINITY,
+            upward: false,
+        };
+    }
     let drop = x - low;
     let discriminant = (v * v + 2.0 * g * drop).max(0.0);
     let after = if v > 0.0 {

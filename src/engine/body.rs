@@ -2,7 +2,7 @@
 
 use crate::engine::cells::Cells;
 use crate::engine::counts::ModeCounts;
-use crate::model::{Boundary, Dynamics, Flight, Model, Motion, FlightOf};
+use crate::model::{Boundary, Dynamics, Flight, FlightOf, Model, Motion};
 use crate::particle::{Mode, Particle, ParticleId, Vector};
 use crate::time::Time;
 

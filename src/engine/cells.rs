@@ -63,8 +63,16 @@ impl<const D: usize> Cells<D> {
                 let along = positions.iter().map(|position| position[axis]);
                 let least = along.clone().fold(f64::INFINITY, f64::min);
                 let most = along.fold(f64::NEG_INFINITY, f64::max);
-                low[axis] = if least.is_finite() { least - 0.5 * reach } else { 0.0 };
-                span[axis] = if least.is_finite() { most - least + reach } else { reach };
+                low[axis] = if least.is_finite() {
+                    least - 0.5 * reach
+                } else {
+                    0.0
+                };
+                span[axis] = if least.is_finite() {
+                    most - least + reach
+                } else {
+                    reach
+                };
             }
         }
         // Not many more cells than grains, however thin the gas.
@@ -82,7 +90,11 @@ impl<const D: usize> Cells<D> {
             let this = Axis {
                 origin: low[axis],
                 // The cells of a period must fit exactly.
-                edge: if period.is_some() { fitting } else { fitting.max(edge) },
+                edge: if period.is_some() {
+                    fitting
+                } else {
+                    fitting.max(edge)
+                },
                 count,
                 stride,
                 period,
@@ -127,7 +139,10 @@ impl<const D: usize> Cells<D> {
 
     /// The shortest edge, in d.
     pub(super) fn least_edge(&self) -> f64 {
-        self.axes.iter().map(|axis| axis.edge).fold(f64::INFINITY, f64::min)
+        self.axes
+            .iter()
+            .map(|axis| axis.edge)
+            .fold(f64::INFINITY, f64::min)
     }
 
     /// The most rings of cells that are worth a look: beyond, everything has
@@ -148,7 +163,11 @@ impl<const D: usize> Cells<D> {
         }
         (
             if cell == 0 { f64::NEG_INFINITY } else { low },
-            if cell == this.count - 1 { f64::INFINITY } else { high },
+            if cell == this.count - 1 {
+                f64::INFINITY
+            } else {
+                high
+            },
         )
     }
 
@@ -168,12 +187,7 @@ impl<const D: usize> Cells<D> {
     /// Calls `visit` for every grain within `rings` cells of `particle`'s own,
     /// itself left out.
     #[inline]
-    pub(super) fn for_each_near(
-        &self,
-        particle: u32,
-        rings: i32,
-        visit: impl FnMut(Found<D>),
-    ) {
+    pub(super) fn for_each_near(&self, particle: u32, rings: i32, visit: impl FnMut(Found<D>)) {
         let centre = self.seats[particle as usize].cell;
         self.for_each_in(
             particle,
@@ -278,7 +292,9 @@ impl<const D: usize> Cells<D> {
 
     fn index_of(&self, particle: u32) -> usize {
         let cell = self.seats[particle as usize].cell;
-        (0..D).map(|axis| self.wrapped(cell[axis], axis) * self.axes[axis].stride).sum()
+        (0..D)
+            .map(|axis| self.wrapped(cell[axis], axis) * self.axes[axis].stride)
+            .sum()
     }
 
     fn link(&mut self, particle: u32) {

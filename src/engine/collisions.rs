@@ -37,6 +37,7 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
         let apart = self.world.displacement(&self.model, &two, &one);
         let distance = apart.norm();
         let normal = apart / distance;
+        let stored_position = two.position;
         two.position = one.position - apart;
         self.counts.guard += u64::from(self.traces.held_at(a, b, now));
         let mut impact = self.impact(a, one, normal, two.diameter);
@@ -105,7 +106,7 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
         if two_mobile {
             run_other = self.traces.collided(b, Partner::Particle(a), now);
             self.traces.hold(b, None, now);
-            self.settle(b, two.position, rebound.other_velocity);
+            self.settle(b, stored_position, rebound.other_velocity);
         }
         if kind == OccurrenceKind::Wake {
             let cause = WakeCause::Hit {
@@ -322,7 +323,10 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
                 collisions: u64::from(run),
             });
         }
-        if !guards.cascade.is_some_and(|limit| run >= limit && run % limit == 0) {
+        if !guards
+            .cascade
+            .is_some_and(|limit| run >= limit && run % limit == 0)
+        {
             return false;
         }
         let touches: Vec<Touch<D>> = self.touched(particle).into_iter().map(|t| t.0).collect();

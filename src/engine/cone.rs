@@ -145,7 +145,10 @@ mod tests {
             touch(0.0, 1.0, 0.0),
             touch(0.0, -1.0, 0.0),
         ];
-        assert_eq!(project(Vector::<3>::new(0.1, 0.0, 0.0), &touches, 1e-5), None);
+        assert_eq!(
+            project(Vector::<3>::new(0.1, 0.0, 0.0), &touches, 1e-5),
+            None
+        );
         let still = project(Vector::<3>::new(0.1, 0.2, 0.0), &touches, 0.0).unwrap();
         assert!(still.norm() < 1e-14);
     }

@@ -44,7 +44,7 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
             }
             debug_assert!(
                 key.time >= self.world.clock,
-                "an event at {} came to light only at {}",
+                "an event {key:?} at {} came to light only at {}",
                 key.time,
                 self.world.clock
             );

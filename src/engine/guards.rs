@@ -78,7 +78,11 @@ impl Traces {
     pub(super) fn collided(&mut self, particle: u32, partner: Partner, now: Time) -> u32 {
         let trace = &mut self.traces[particle as usize];
         let at_once = trace.last.is_finite() && now - trace.last < INSTANT;
-        trace.run = if at_once { trace.run.saturating_add(1) } else { 1 };
+        trace.run = if at_once {
+            trace.run.saturating_add(1)
+        } else {
+            1
+        };
         trace.last = now;
         trace.partner = partner;
         trace.run

@@ -355,7 +355,12 @@ mod tests {
         for _ in 0..4 {
             queue.push_empty();
         }
-        let at = |rank, low, high| Key { time: Time::from_units(1.0), rank, low, high };
+        let at = |rank, low, high| Key {
+            time: Time::from_units(1.0),
+            rank,
+            low,
+            high,
+        };
         queue.set(0, at(Rank::Transfer, 0, 0));
         queue.set(3, at(Rank::Contact, 2, 3));
         queue.set(2, at(Rank::Contact, 1, 2));
@@ -363,7 +368,13 @@ mod tests {
         let mut order = Vec::new();
         while let Some((particle, key)) = queue.peek() {
             order.push(particle);
-            queue.set(particle, Key { time: Time::NEVER, ..key });
+            queue.set(
+                particle,
+                Key {
+                    time: Time::NEVER,
+                    ..key
+                },
+            );
         }
         assert_eq!(order, [2, 3, 1, 0]);
     }

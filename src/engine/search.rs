@@ -22,6 +22,10 @@ use crate::model::{
 use crate::particle::{Vector, WallId};
 use crate::time::Time;
 
+/// Squared distance, over that at contact, within which two grains that have
+/// just collided are in the image in which they did.
+const IMAGE: f64 = 1.0 + 1.0e-6;
+
 /// Who a grain meets.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Partner {
@@ -243,7 +247,6 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
         if horizon < 0.0 {
             return None;
         }
-        let touching = self.touching(first, second);
         let model = &self.model;
         let mut flight_a = self.world.flight(model, first);
         if a.since < base {
@@ -261,14 +264,14 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
         } else {
             0.0
         };
-        if base == self.world.clock {
-            let apart = flight_b.position(0.0) + shift - flight_a.position(0.0);
-            let squared = apart.norm_squared();
-            if squared < distance * distance {
-                self.deepest = self.deepest.max(distance - squared.sqrt());
-            }
+        let apart = flight_b.position(0.0) + shift - flight_a.position(0.0);
+        let squared = apart.norm_squared();
+        let contact = distance * distance;
+        if squared < contact && base == self.world.clock {
+            self.deepest = self.deepest.max(distance - squared.sqrt());
         }
-        let mut touching = touching;
+        // In a narrow box the two may also meet in another image.
+        let mut touching = self.touching(first, second) && squared < IMAGE * contact;
         loop {
             let forecast = model.predictor().pair(&Approach {
                 first: flight_a,

@@ -225,7 +225,11 @@ fn validate<const D: usize>(id: ParticleId, particle: &Particle<D>) -> Result<()
     };
     for &x in particle.position.iter() {
         if !(x.abs() <= 1.0e9) {
-            return refuse("position", x, "coordinates between -1e9 and 1e9 are allowed");
+            return refuse(
+                "position",
+                x,
+                "coordinates between -1e9 and 1e9 are allowed",
+            );
         }
     }
     for &v in particle.velocity.iter() {
@@ -235,7 +239,11 @@ fn validate<const D: usize>(id: ParticleId, particle: &Particle<D>) -> Result<()
     }
     let positive = |value: f64| value > 0.0 && value.is_finite();
     if !positive(particle.diameter) {
-        return refuse("diameter", particle.diameter, "a positive number is allowed");
+        return refuse(
+            "diameter",
+            particle.diameter,
+            "a positive number is allowed",
+        );
     }
     if !positive(particle.mass) {
         return refuse("mass", particle.mass, "a positive number is allowed");

@@ -148,7 +148,9 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
         let positions: Vec<_> = (0..self.world.bodies.len() as u32)
             .map(|particle| {
                 let since = self.world.bodies[particle as usize].since;
-                self.world.flight(&self.model, particle).position(now - since)
+                self.world
+                    .flight(&self.model, particle)
+                    .position(now - since)
             })
             .collect();
         self.world.cells = Cells::new(self.model.boundary(), &positions, reach);

@@ -244,10 +244,7 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
                 now + ahead
             };
         }
-        let own = self
-            .world
-            .flight(&self.model, particle)
-            .speed_bound(within);
+        let own = self.world.flight(&self.model, particle).speed_bound(within);
         let grown = self.world.largest * self.scale_at(now + within);
         grown + (own + self.speed_ceiling) * within
     }
