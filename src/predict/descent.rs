@@ -170,9 +170,11 @@ fn from_apart<N: Real>(gap: &GapPolynomial<N>, horizon: N) -> Descent<N> {
     by_minorants(gap, from, horizon)
 }
 
-/// The root in `[low, high]` of a concave f with f(low) ≥ 0 ≥ f(high).
+/// The root in `[low, high]` of a concave f with f(low) ≥ 0 ≥ f(high), by
+/// Chebyshev's cubic refinement of Newton's method, kept inside the bracket.
 #[inline]
 fn concave_root<N: Real>(gap: &GapPolynomial<N>, low: N, guess: N, high: N) -> N {
+    let [_, _, _, c3, c4] = gap.coefficients;
     let (mut low, mut high, mut t) = (low, high, guess);
     for _ in 0..MOST_STEPS {
         let (value, slope) = (gap.value(t), gap.slope(t));
@@ -181,18 +183,30 @@ fn concave_root<N: Real>(gap: &GapPolynomial<N>, low: N, guess: N, high: N) -> N
         } else {
             high = high.at_most(t);
         }
-        let newton = t - value / slope;
-        let inside = slope < N::ZERO && newton >= low && newton <= high;
-        if value.abs() <= gap.rounding(t) {
-            return if inside { newton } else { t };
+        let inverse = N::from_f64(-1.0) / slope;
+        let newton = value * inverse;
+        let bend = gap.half_curvature(t) * newton * inverse;
+        let step = newton * (N::from_f64(1.0) + bend);
+        let next = t + step;
+        let inside = slope < N::ZERO && next >= low && next <= high;
+        let rounding = gap.rounding(t);
+        if !inside {
+            if value.abs() <= rounding {
+                return t;
+            }
+            let middle = low + (high - low).times(0.5);
+            if middle == t {
+                return t;
+            }
+            t = middle;
+            continue;
         }
-        let next = if inside {
-            newton
-        } else {
-            low + (high - low).times(0.5)
-        };
-        if next == t {
-            break;
+        // |f(next)| by Taylor's formula, in which most terms cancel.
+        let size = step.abs();
+        let rest = value.abs() * bend * bend * (N::from_f64(2.0) + bend.abs())
+            + size * size * size * ((c3 + t * c4.times(4.0)).abs() + size * c4);
+        if rest <= rounding || next == t {
+            return next;
         }
         t = next;
     }
@@ -223,10 +237,23 @@ fn by_minorants<N: Real>(gap: &GapPolynomial<N>, from: N, horizon: N) -> Descent
             // Left so, the minorant would seem to have no root.
             value = zero;
         }
-        let step = if t >= apex {
+        let step = if slope < zero {
+            let (root, trust, bound) = if t >= apex {
+                let root = first_root(value, slope, half_curvature);
+                (root, N::INFINITY, half_curvature)
+            } else {
+                trusted_step(gap, t, [value, slope, half_curvature], apex, least)
+            };
+            let step = root.at_most(trust);
+            // What f can be at the root of the minorant, by Taylor's formula.
+            let rest = (half_curvature - bound).abs()
+                + step * ((c3 + t * c4.times(4.0)).at_least(zero) + step * c4);
+            if root <= trust && step * step * rest <= gap.rounding(t) {
+                return up_to(t + step, horizon);
+            }
+            step
+        } else if t >= apex {
             first_root(value, slope, half_curvature)
-        } else if slope < zero {
-            trusted_step(gap, t, [value, slope, half_curvature], apex, least)
         } else if least >= zero {
             N::INFINITY
         } else {
@@ -255,8 +282,8 @@ fn by_minorants<N: Real>(gap: &GapPolynomial<N>, from: N, horizon: N) -> Descent
     Descent::NotBefore(t)
 }
 
-/// A minorant step before the apex, where h still decreases: h is bounded over
-/// a length that the local parabola suggests, and the step is no longer than that.
+/// The minorant before the apex, where h still decreases: its root, the length
+/// over which it is trusted to lie below f, and the bound on h over that length.
 #[inline]
 fn trusted_step<N: Real>(
     gap: &GapPolynomial<N>,
@@ -264,16 +291,12 @@ fn trusted_step<N: Real>(
     [value, slope, half_curvature]: [N; 3],
     apex: N,
     least: N,
-) -> N {
-    let local = first_root(value, slope, half_curvature);
-    let trust = if local < N::INFINITY {
-        local.times(2.0)
-    } else if half_curvature > N::ZERO {
-        // The parabola stays above zero: to the far side of its lowest point,
-        // but not less than the length over which f could change by itself.
-        (-slope / half_curvature).at_least((value / half_curvature).sqrt())
+) -> (N, N, N) {
+    let trust = if half_curvature >= N::ZERO {
+        // No parabola with this slope has its first root further away.
+        value.times(2.0) / -slope
     } else {
-        N::INFINITY
+        first_root(value, slope, half_curvature).times(2.0)
     };
     let end = t + trust;
     let bound = if end >= apex {
@@ -281,5 +304,5 @@ fn trusted_step<N: Real>(
     } else {
         gap.half_curvature(end)
     };
-    first_root(value, slope, bound).at_most(trust)
+    (first_root(value, slope, bound), trust, bound)
 }
