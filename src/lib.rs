@@ -1,5 +1,6 @@
 //! grainfall
 
+pub mod analysis;
 pub mod boundary;
 pub mod collide;
 pub mod dynamics;
@@ -10,6 +11,7 @@ pub mod observe;
 pub mod particle;
 pub mod policy;
 pub mod predict;
+pub mod setup;
 pub mod time;
 
 pub use error::SetupError;
