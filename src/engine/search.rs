@@ -19,7 +19,7 @@ use crate::engine::simulation::Simulation;
 use crate::model::{
     Approach, Boundary, Dynamics, Encounter, Flight, FlightOf, Forecast, Model, Predictor,
 };
-use crate::particle::{Mode, Vector, WallId};
+use crate::particle::{Vector, WallId};
 use crate::time::Time;
 
 /// Squared distance, over that at contact, within which two grains that have
@@ -133,11 +133,12 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
             {
                 found.swap(0, place);
             }
+            let flight = self.world.flight(&self.model, particle);
             for (place, other) in found.iter().enumerate() {
                 if place == 1 {
                     self.meet_walls(particle);
                 }
-                self.meet(particle, other);
+                self.meet(&flight, particle, other);
             }
             if found.len() < 2 {
                 self.meet_walls(particle);
@@ -157,39 +158,49 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
     fn tell_neighbours(&mut self, particle: u32, found: &[Found<D>]) {
         for other in found {
             if self.world.bodies[other.particle as usize].mode.is_mobile() {
-                if self.meet(other.particle, &other.seen_from(particle)) {
+                let flight = self.world.flight(&self.model, other.particle);
+                if self.meet(&flight, other.particle, &other.seen_from(particle)) {
                     self.enqueue(other.particle);
                 }
             }
         }
     }
 
-    /// Whether a mobile grain's neighbour is static, and out of reach up to the
-    /// grain's next known contact. Most neighbours are, and this is cheap.
+    /// Whether another grain is out of a mobile grain's reach up to the grain's
+    /// next known contact. Most are, and this is cheap.
     #[inline]
     fn is_out_of_reach(&self, flight: &FlightOf<M, D>, particle: u32, other: &Found<D>) -> bool {
         let body = &self.world.bodies[particle as usize];
-        let static_body = &self.world.bodies[other.particle as usize];
-        if M::Dynamics::GROWS
-            || static_body.mode != Mode::Frozen && static_body.mode != Mode::Fixed
-            || static_body.since > body.since
-        {
+        let far = &self.world.bodies[other.particle as usize];
+        if M::Dynamics::GROWS {
             return false;
         }
+        let since_far = body.since - far.since;
         let within = self.slots[particle as usize].contact - body.since;
-        let mut apart = static_body.position - flight.position(0.0);
+        if since_far < 0.0 || within > 1.0e3 {
+            return false;
+        }
+        let mut speed = flight.speed_bound(within);
+        let mut apart = -flight.position(0.0);
+        if far.mode.is_static() && far.velocity == Vector::<D>::zeros() {
+            apart += far.position;
+        } else {
+            let far_flight = self.world.flight(&self.model, other.particle);
+            apart += far_flight.position(since_far);
+            speed += far_flight.speed_bound(since_far + within);
+        }
         if other.turns != [0; D] {
             apart += self.shift(other.turns, 1);
         }
-        let reach = body.radius + static_body.radius + flight.speed_bound(within) * within;
-        static_body.velocity == Vector::<D>::zeros() && apart.norm_squared() > ROUND * reach * reach
+        let reach = body.radius + far.radius + speed * within;
+        apart.norm_squared() > ROUND * reach * reach
     }
 
     /// Notes a mobile grain's contact with another if it comes first; true if
     /// it did.
-    fn meet(&mut self, particle: u32, other: &Found<D>) -> bool {
-        let flight = self.world.flight(&self.model, particle);
-        if self.is_out_of_reach(&flight, particle, other) {
+    #[inline]
+    fn meet(&mut self, flight: &FlightOf<M, D>, particle: u32, other: &Found<D>) -> bool {
+        if self.is_out_of_reach(flight, particle, other) {
             return false;
         }
         let slot = self.slots[particle as usize];
