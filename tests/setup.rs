@@ -463,6 +463,7 @@ fn bases_of_other_kinds() {
     check::<2>(Sizes::default(), Vector::<2>::new(30.0, 2.0), true);
     check::<2>(BIMODAL, Vector::<2>::new(20.0, 2.5), false);
     check::<2>(Sizes::default(), Vector::<2>::new(1.2, 2.0), false);
+    check::<3>(Sizes::default(), Vector::<3>::new(1.3, 1.3, 2.0), false);
     check::<1>(Sizes::default(), Vector::<1>::new(2.0), true);
 }
 

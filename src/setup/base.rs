@@ -67,7 +67,7 @@ impl<const D: usize> Base<D> {
     ///
     /// When a parameter is out of range, a period is shorter than two of the
     /// largest diameters, walls are so near to each other that the grains jam
-    /// (about 1.1 of the largest diameter), or the slab is too thin to hold a
+    /// (hardly wider than the largest diameter), or the slab is too thin to hold a
     /// single grain.
     pub fn grains(&self, rng: &mut ChaCha8Rng) -> Result<Vec<Particle<D>>, SetupError> {
         let sizes = self.sizes.validated()?;

@@ -64,9 +64,7 @@ pub(super) fn packed<const D: usize>(
     if ratio >= 1.0 {
         return Ok(insert(region, diameters, rng)?);
     }
-    let mut scale = libm::pow(ratio, 1.0 / D as f64);
-    let small: Vec<f64> = diameters.iter().map(|diameter| diameter * scale).collect();
-    let mut places = insert(region, &small, rng)?;
+    let (mut scale, mut places) = seeds(region, diameters, libm::pow(ratio, 1.0 / D as f64), rng)?;
 
     // In units of the mean grain: then thermal speeds are about one diameter
     // per unit of time, and the growth is slow beside them whatever the sizes.
@@ -130,6 +128,27 @@ pub(super) fn packed<const D: usize>(
         scale = next;
     }
     Ok(places)
+}
+
+/// Random places for images of the grains scaled by `scale`, or by less where
+/// that leaves no room, as between narrow walls; and the scale.
+fn seeds<const D: usize>(
+    region: &Region<D>,
+    diameters: &[f64],
+    mut scale: f64,
+    rng: &mut ChaCha8Rng,
+) -> Result<(f64, Vec<Vector<D>>), SetupError> {
+    let mut attempts = 0;
+    loop {
+        let small: Vec<f64> = diameters.iter().map(|diameter| diameter * scale).collect();
+        match insert(region, &small, rng) {
+            Err(SetupError::NoRoom { .. }) if attempts < 10 => {
+                attempts += 1;
+                scale *= 0.85;
+            }
+            placed => return Ok((scale, placed?)),
+        }
+    }
 }
 
 /// A packing fraction that random insertion reaches with ease: half of where it
