@@ -10,6 +10,7 @@ mod cone;
 mod counts;
 mod events;
 mod guards;
+mod neighbours;
 mod queue;
 mod search;
 mod settings;

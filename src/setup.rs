@@ -20,13 +20,19 @@
 //! # Ok::<(), grainfall::SetupError>(())
 //! ```
 
+mod base;
+mod gas;
+mod growth;
 mod insertion;
 mod one_by_one;
 mod rain;
 mod random;
 mod region;
 mod sizes;
+mod velocities;
 
+pub use base::Base;
+pub use gas::Gas;
 pub use one_by_one::OneByOne;
 pub use rain::Rain;
 pub use rand_chacha::ChaCha8Rng;

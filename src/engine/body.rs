@@ -1,7 +1,7 @@
 //! What the engine stores of grains, and where they are now.
 
-use crate::engine::cells::Cells;
 use crate::engine::counts::ModeCounts;
+use crate::engine::neighbours::Neighbours;
 use crate::model::{Boundary, Dynamics, Flight, FlightOf, Model, Motion};
 use crate::particle::{Mode, Particle, ParticleId, Vector};
 use crate::time::Time;
@@ -26,7 +26,7 @@ pub(super) struct Body<const D: usize> {
 pub(super) struct World<const D: usize> {
     pub(super) bodies: Vec<Body<D>>,
     pub(super) masses: Vec<f64>,
-    pub(super) cells: Cells<D>,
+    pub(super) near: Neighbours<D>,
     pub(super) clock: Time,
     pub(super) modes: ModeCounts,
     /// Largest diameter at t = 0, in d.
@@ -83,7 +83,7 @@ impl<const D: usize> World<D> {
             if x < period.origin || x >= period.origin + period.length {
                 let turns = libm::floor((x - period.origin) / period.length);
                 body.position[axis] = x - turns * period.length;
-                self.cells.unwind(particle, axis, turns as i32);
+                self.near.unwind(particle, axis, turns as i32);
             }
         }
     }

@@ -1,18 +1,17 @@
 //! The cell grid: which grains may be near which.
 //!
-//! A grain belongs to a cell from one transfer event to the next, whatever
-//! rounding says of its position. Cell coordinates are not wrapped while a
-//! grain flies on through a periodic face, so that the image of a neighbour is
-//! known exactly: it is the one whose cell lies next to the grain's own.
-//! Outermost cells of axes that are not periodic reach to infinity.
+//! A grain is filed under the cell of its *anchor*, the place its neighbour
+//! list was made for. Cell coordinates are not wrapped while a grain flies on
+//! through a periodic face, so that the image of a neighbour is known exactly:
+//! it is the one whose cell lies next to the grain's own. Outermost cells of
+//! axes that are not periodic reach to infinity.
 
 use crate::model::{Boundary, Period};
 use crate::particle::Vector;
 
 const NONE: u32 = u32::MAX;
 
-/// Edges are longer than the largest contact distance by this factor, which
-/// covers the rounding of transfer times.
+/// Edges are longer than what they must cover by this factor, for rounding.
 const SLACK: f64 = 1.0 + 1.0e-9;
 
 /// Cells of an axis.
@@ -43,15 +42,25 @@ pub(super) struct Cells<const D: usize> {
 
 /// A grain found next to another, with the number of periods to add to its
 /// position along each axis.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Found<const D: usize> {
     pub(super) particle: u32,
     pub(super) turns: [i32; D],
 }
 
+impl<const D: usize> Found<D> {
+    /// How `particle`, next to which this was found, is found next to this.
+    pub(super) fn seen_from(&self, particle: u32) -> Self {
+        Found {
+            particle,
+            turns: self.turns.map(|turns| -turns),
+        }
+    }
+}
+
 impl<const D: usize> Cells<D> {
-    /// A grid for grains at these positions whose centres touch at no more than
-    /// `reach`.
+    /// A grid for grains at these positions; grains in cells that are not
+    /// neighbours are farther apart than `reach`.
     pub(super) fn new<B: Boundary<D>>(boundary: &B, positions: &[Vector<D>], reach: f64) -> Self {
         let mut low = [0.0; D];
         let mut span = [0.0; D];
@@ -115,11 +124,7 @@ impl<const D: usize> Cells<D> {
 
     /// Seats one more grain.
     pub(super) fn add(&mut self, position: &Vector<D>) {
-        let cell = std::array::from_fn(|k| {
-            let axis = &self.axes[k];
-            let place = libm::floor((position[k] - axis.origin) / axis.edge);
-            place.clamp(0.0, f64::from(axis.count - 1)) as i32
-        });
+        let cell = self.cell_of(position);
         let particle = self.seats.len() as u32;
         self.seats.push(Seat {
             cell,
@@ -127,6 +132,17 @@ impl<const D: usize> Cells<D> {
             previous: NONE,
         });
         self.link(particle);
+    }
+
+    fn cell_of(&self, position: &Vector<D>) -> [i32; D] {
+        std::array::from_fn(|k| {
+            let axis = &self.axes[k];
+            let place = libm::floor((position[k] - axis.origin) / axis.edge);
+            match axis.period {
+                Some(_) => place as i32,
+                None => place.clamp(0.0, f64::from(axis.count - 1)) as i32,
+            }
+        })
     }
 
     /// Unseats the grain that was seated last.
@@ -151,31 +167,14 @@ impl<const D: usize> Cells<D> {
         self.axes.iter().map(|axis| axis.count).max().unwrap_or(1)
     }
 
-    /// Faces of a grain's cell along an axis, in d.
-    #[inline]
-    pub(super) fn faces(&self, particle: u32, axis: usize) -> (f64, f64) {
-        let cell = self.seats[particle as usize].cell[axis];
-        let this = &self.axes[axis];
-        let low = this.origin + f64::from(cell) * this.edge;
-        let high = this.origin + f64::from(cell + 1) * this.edge;
-        if this.period.is_some() {
-            return (low, high);
+    /// Files a grain under the cell of another position.
+    pub(super) fn refile(&mut self, particle: u32, position: &Vector<D>) {
+        let cell = self.cell_of(position);
+        if cell != self.seats[particle as usize].cell {
+            self.unlink(particle);
+            self.seats[particle as usize].cell = cell;
+            self.link(particle);
         }
-        (
-            if cell == 0 { f64::NEG_INFINITY } else { low },
-            if cell == this.count - 1 {
-                f64::INFINITY
-            } else {
-                high
-            },
-        )
-    }
-
-    /// Moves a grain to the next cell.
-    pub(super) fn transfer(&mut self, particle: u32, axis: usize, upward: bool) {
-        self.unlink(particle);
-        self.seats[particle as usize].cell[axis] += if upward { 1 } else { -1 };
-        self.link(particle);
     }
 
     /// Tells the grid that `turns` periods have been taken off a grain's
@@ -195,25 +194,6 @@ impl<const D: usize> Cells<D> {
             centre.map(|c| c + rings),
             visit,
         );
-    }
-
-    /// Calls `visit` for every grain in the cells that came next to `particle`
-    /// when it moved along `axis`.
-    pub(super) fn for_each_ahead(
-        &self,
-        particle: u32,
-        axis: usize,
-        upward: bool,
-        visit: impl FnMut(Found<D>),
-    ) {
-        let centre = self.seats[particle as usize].cell;
-        let (mut low, mut high) = (centre.map(|c| c - 1), centre.map(|c| c + 1));
-        if upward {
-            low[axis] = high[axis];
-        } else {
-            high[axis] = low[axis];
-        }
-        self.for_each_in(particle, low, high, visit);
     }
 
     #[inline]

@@ -297,10 +297,8 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
         let model = &self.model;
         self.world
             .write(model, particle, position, velocity, Mode::Normal);
-        self.slots[particle as usize] = Slot {
-            crossing: self.slots[particle as usize].crossing,
-            ..Slot::EMPTY
-        };
+        self.slots[particle as usize] = Slot::EMPTY;
+        self.tie_if_moving(particle);
         self.note_speed(particle);
     }
 
@@ -367,24 +365,27 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
         let now = self.world.clock;
         let one = self.world.particle_now(&self.model, particle);
         let mut touches = Vec::new();
-        self.world.cells.for_each_near(particle, 1, |found| {
-            let other = self.world.particle_now(&self.model, found.particle);
-            if other.mode.is_mobile() {
-                return;
-            }
-            let apart = self.world.displacement(&self.model, &other, &one);
-            let contact = 0.5 * (one.diameter + other.diameter);
-            if apart.norm_squared() - contact * contact < TOUCHING {
-                let normal = apart.normalize();
-                touches.push((
-                    Touch {
-                        normal,
-                        speed: other.velocity.dot(&normal),
-                    },
-                    Some(found.particle),
-                ));
-            }
-        });
+        let farthest = one.radius() + 0.5 * self.world.largest * self.scale_at(now) + TOUCHING;
+        self.world
+            .near
+            .for_each_within(particle, farthest, |found| {
+                let other = self.world.particle_now(&self.model, found.particle);
+                if other.mode.is_mobile() {
+                    return;
+                }
+                let apart = self.world.displacement(&self.model, &other, &one);
+                let contact = 0.5 * (one.diameter + other.diameter);
+                if apart.norm_squared() - contact * contact < TOUCHING {
+                    let normal = apart.normalize();
+                    touches.push((
+                        Touch {
+                            normal,
+                            speed: other.velocity.dot(&normal),
+                        },
+                        Some(found.particle),
+                    ));
+                }
+            });
         // By id, so that the outcome does not depend on the grid.
         touches.sort_by_key(|touch| touch.1);
         for wall in self.model.boundary().walls() {
@@ -445,15 +446,13 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
                 any = true;
             }
         }
-        let edge = self.world.cells.least_edge();
-        let farthest_ring = self.world.cells.rings();
-        let mut rings = 1;
+        let mut looked = 1.5 * self.world.largest;
         loop {
             let mut found = std::mem::take(&mut self.scratch);
             found.clear();
             self.world
-                .cells
-                .for_each_near(particle, rings, |other| found.push(other));
+                .near
+                .for_each_within(particle, looked, |other| found.push(other));
             for other in &found {
                 if let Some(time) = self.pair_contact(particle, other.particle, other.turns, first)
                 {
@@ -463,12 +462,11 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
             }
             self.scratch = found;
             // Whoever is farther than this away cannot come first.
-            let within = first - start;
-            let reach = self.reach(particle, within);
-            if rings >= farthest_ring || f64::from(rings) * edge > reach {
+            let reach = self.reach(particle, first - start);
+            if reach <= looked || self.world.near.is_everything(looked) {
                 return any.then_some(first - start);
             }
-            rings = (rings + 1).max((reach / edge).min(f64::from(farthest_ring)) as i32);
+            looked = reach;
         }
     }
 }

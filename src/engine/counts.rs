@@ -19,7 +19,7 @@ pub struct Counts {
     pub check_wake: u64,
     /// Collisions with walls.
     pub wall: u64,
-    /// Crossings from one cell of the grid to the next; not physical.
+    /// Neighbour lists made anew for grains that moved on; not physical.
     pub transfer: u64,
     /// Collisions of any kind that a cut-off speed made elastic.
     pub elastic: u64,

@@ -6,7 +6,7 @@ use crate::engine::queue::{Key, Rank};
 use crate::engine::search::Partner;
 use crate::engine::settings::{Limits, StopReason};
 use crate::engine::simulation::Simulation;
-use crate::model::{Model, Observer};
+use crate::model::{Flight, Model, Observer};
 
 impl<M: Model<D>, const D: usize> Simulation<M, D> {
     /// Carries out events until a limit is reached, and says which.
@@ -73,12 +73,7 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
             }
             (Rank::Wall, Partner::Wall(wall)) => self.collide_wall(particle, wall, observer),
             (Rank::Sleep, _) => self.fall_asleep(particle, None, observer),
-            _ => {
-                let axis = usize::from(slot.axis);
-                self.world.cells.transfer(particle, axis, slot.upward);
-                self.counts.transfer += 1;
-                self.predict_ahead(particle, axis, slot.upward);
-            }
+            _ => self.renew(particle),
         }
     }
 
@@ -95,6 +90,22 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
             } else {
                 (key, Source::Particle(particle))
             }),
+        }
+    }
+
+    /// A grain may have come to the end of its leash.
+    fn renew(&mut self, particle: u32) {
+        let flight = self.world.flight(&self.model, particle);
+        let since = self.world.bodies[particle as usize].since;
+        let position = flight.position(self.world.clock - since);
+        let slack = self.world.near.slack(particle, &position);
+        if self.world.near.is_stretched(particle, slack) {
+            self.counts.transfer += 1;
+            self.tie(particle);
+            self.predict_listed(particle);
+        } else {
+            self.find_renewal(particle);
+            self.enqueue(particle);
         }
     }
 

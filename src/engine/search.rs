@@ -1,4 +1,4 @@
-//! Prediction: each grain's next contact, wall and cell crossing.
+//! Prediction: each grain's next contact, with grains and with walls.
 //!
 //! What holds between events, and what makes one entry a grain enough: for
 //! every pair that may meet next to each other's cells, the time of their
@@ -17,7 +17,7 @@ use crate::engine::cells::Found;
 use crate::engine::queue::{Key, Rank};
 use crate::engine::simulation::Simulation;
 use crate::model::{
-    Approach, Boundary, Dynamics, Encounter, Exit, Flight, Forecast, Model, Predictor,
+    Approach, Boundary, Dynamics, Encounter, Flight, FlightOf, Forecast, Model, Predictor,
 };
 use crate::particle::{Vector, WallId};
 use crate::time::Time;
@@ -25,6 +25,9 @@ use crate::time::Time;
 /// Squared distance, over that at contact, within which two grains that have
 /// just collided are in the image in which they did.
 const IMAGE: f64 = 1.0 + 1.0e-6;
+
+/// Covers the rounding of a comparison of squared distances.
+const ROUND: f64 = 1.0 + 1.0e-12;
 
 /// Who a grain meets.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -42,10 +45,8 @@ pub(super) struct Slot {
     pub(super) partner: Partner,
     /// The partner's stamp when this was foreseen.
     pub(super) partner_stamp: u32,
-    /// When it leaves its cell, and through which face.
-    pub(super) crossing: Time,
-    pub(super) axis: u8,
-    pub(super) upward: bool,
+    /// Until when its neighbour list is certain to be complete.
+    pub(super) renewal: Time,
     /// When it falls asleep, if it is about to.
     pub(super) sleep: Time,
 }
@@ -55,9 +56,7 @@ impl Slot {
         contact: Time::NEVER,
         partner: Partner::Nobody,
         partner_stamp: 0,
-        crossing: Time::NEVER,
-        axis: 0,
-        upward: false,
+        renewal: Time::NEVER,
         sleep: Time::NEVER,
     };
 
@@ -83,7 +82,7 @@ impl Slot {
         };
         self.contact_key(particle)
             .min(own(self.sleep, Rank::Sleep))
-            .min(own(self.crossing, Rank::Transfer))
+            .min(own(self.renewal, Rank::Transfer))
     }
 }
 
@@ -113,13 +112,18 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
         let slot = &mut self.slots[particle as usize];
         slot.contact = Time::NEVER;
         slot.partner = Partner::Nobody;
+        if self.world.bodies[particle as usize].mode.is_static() {
+            slot.sleep = Time::NEVER;
+        }
+        self.predict_listed(particle);
+    }
+
+    /// Looks at everybody on a grain's list, keeping what is known already.
+    pub(super) fn predict_listed(&mut self, particle: u32) {
         let mut found = std::mem::take(&mut self.scratch);
         found.clear();
-        self.world
-            .cells
-            .for_each_near(particle, 1, |other| found.push(other));
+        found.extend_from_slice(self.world.near.list(particle));
         if self.world.bodies[particle as usize].mode.is_static() {
-            self.slots[particle as usize].sleep = Time::NEVER;
             self.tell_neighbours(particle, &found);
         } else {
             // The grain just left comes first: it is often the next, and a
@@ -129,37 +133,19 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
             {
                 found.swap(0, place);
             }
+            let flight = self.world.flight(&self.model, particle);
             for (place, other) in found.iter().enumerate() {
                 if place == 1 {
                     self.meet_walls(particle);
                 }
-                self.meet(particle, other);
+                self.meet(&flight, particle, other);
             }
             if found.len() < 2 {
                 self.meet_walls(particle);
             }
         }
         self.scratch = found;
-        self.find_crossing(particle);
-        self.enqueue(particle);
-    }
-
-    /// Looks at the cells that came next to a grain's own as it moved on.
-    pub(super) fn predict_ahead(&mut self, particle: u32, axis: usize, upward: bool) {
-        let mut found = std::mem::take(&mut self.scratch);
-        found.clear();
-        self.world
-            .cells
-            .for_each_ahead(particle, axis, upward, |other| found.push(other));
-        if self.world.bodies[particle as usize].mode.is_static() {
-            self.tell_neighbours(particle, &found);
-        } else {
-            for other in &found {
-                self.meet(particle, other);
-            }
-        }
-        self.scratch = found;
-        self.find_crossing(particle);
+        self.find_renewal(particle);
         self.enqueue(particle);
     }
 
@@ -172,20 +158,51 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
     fn tell_neighbours(&mut self, particle: u32, found: &[Found<D>]) {
         for other in found {
             if self.world.bodies[other.particle as usize].mode.is_mobile() {
-                let back = Found {
-                    particle,
-                    turns: other.turns.map(|turns| -turns),
-                };
-                if self.meet(other.particle, &back) {
+                let flight = self.world.flight(&self.model, other.particle);
+                if self.meet(&flight, other.particle, &other.seen_from(particle)) {
                     self.enqueue(other.particle);
                 }
             }
         }
     }
 
+    /// Whether another grain is out of a mobile grain's reach up to the grain's
+    /// next known contact. Most are, and this is cheap.
+    #[inline]
+    fn is_out_of_reach(&self, flight: &FlightOf<M, D>, particle: u32, other: &Found<D>) -> bool {
+        let body = &self.world.bodies[particle as usize];
+        let far = &self.world.bodies[other.particle as usize];
+        if M::Dynamics::GROWS {
+            return false;
+        }
+        let since_far = body.since - far.since;
+        let within = self.slots[particle as usize].contact - body.since;
+        if since_far < 0.0 || within > 1.0e3 {
+            return false;
+        }
+        let mut speed = flight.speed_bound(within);
+        let mut apart = -flight.position(0.0);
+        if far.mode.is_static() && far.velocity == Vector::<D>::zeros() {
+            apart += far.position;
+        } else {
+            let far_flight = self.world.flight(&self.model, other.particle);
+            apart += far_flight.position(since_far);
+            speed += far_flight.speed_bound(since_far + within);
+        }
+        if other.turns != [0; D] {
+            apart += self.shift(other.turns, 1);
+        }
+        let reach = body.radius + far.radius + speed * within;
+        apart.norm_squared() > ROUND * reach * reach
+    }
+
     /// Notes a mobile grain's contact with another if it comes first; true if
     /// it did.
-    fn meet(&mut self, particle: u32, other: &Found<D>) -> bool {
+    #[inline]
+    fn meet(&mut self, flight: &FlightOf<M, D>, particle: u32, other: &Found<D>) -> bool {
+        if self.is_out_of_reach(flight, particle, other) {
+            return false;
+        }
         let slot = self.slots[particle as usize];
         let Some(time) = self.pair_contact(particle, other.particle, other.turns, slot.contact)
         else {
@@ -381,29 +398,25 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
         shift
     }
 
-    /// Finds when a grain leaves its cell.
-    pub(super) fn find_crossing(&mut self, particle: u32) {
+    /// Finds until when a grain is certain to stay within its leash.
+    pub(super) fn find_renewal(&mut self, particle: u32) {
         let flight = self.world.flight(&self.model, particle);
         let slot = &mut self.slots[particle as usize];
-        slot.crossing = Time::NEVER;
+        slot.renewal = Time::NEVER;
         if flight.is_at_rest() {
             return;
         }
-        let since = self.world.bodies[particle as usize].since;
-        let from = self.world.clock - since;
-        let mut first: Option<(Exit, usize)> = None;
-        for axis in 0..D {
-            let (low, high) = self.world.cells.faces(particle, axis);
-            if let Some(exit) = flight.exit(axis, low, high, from)
-                && first.is_none_or(|(earliest, _)| exit.after < earliest.after)
-            {
-                first = Some((exit, axis));
-            }
-        }
-        if let Some((exit, axis)) = first {
-            slot.crossing = (since + exit.after).max(self.world.clock);
-            slot.axis = axis as u8;
-            slot.upward = exit.upward;
-        }
+        let after = self.world.clock - self.world.bodies[particle as usize].since;
+        let flight = flight.advanced(after);
+        let slack = self
+            .world
+            .near
+            .slack(particle, &flight.position(0.0))
+            .max(0.0);
+        // Within a time t it goes no farther than its top speed then times t.
+        let safe = |window: f64| f64::min(window, slack / flight.speed_bound(window));
+        let mut certain = safe(1.0);
+        certain = certain.max(safe(2.0 * certain));
+        slot.renewal = self.world.clock + certain;
     }
 }

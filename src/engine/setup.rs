@@ -3,9 +3,9 @@
 use std::collections::BinaryHeap;
 
 use crate::engine::body::{Body, World, scale_at};
-use crate::engine::cells::Cells;
 use crate::engine::counts::{Counts, ModeCounts};
 use crate::engine::guards::Traces;
+use crate::engine::neighbours::Neighbours;
 use crate::engine::queue::EventQueue;
 use crate::engine::search::Slot;
 use crate::engine::settings::Settings;
@@ -63,13 +63,13 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
         let scale = scale_at::<M, D>(&model, settings.start);
         check_periods(&model, largest * scale)?;
         let count = particles.len();
-        let cells = Cells::new(model.boundary(), &[], 1.0);
+        let near = Neighbours::new(model.boundary(), &[], 1.0);
         let mut simulation = Simulation {
             settings,
             world: World {
                 bodies: Vec::with_capacity(count),
                 masses: Vec::with_capacity(count),
-                cells,
+                near,
                 clock: settings.start,
                 modes: ModeCounts::default(),
                 largest,
@@ -129,7 +129,7 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
         }
         self.store(particle);
         let position = self.world.bodies[index as usize].position;
-        self.world.cells.add(&position);
+        self.world.near.add(position);
         self.memories.push(MemoryOf::<M, D>::default());
         self.spins.push(SpinOf::<M, D>::default());
         self.slots.push(Slot::EMPTY);
@@ -137,6 +137,7 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
             self.forget_last();
             return Err(error);
         }
+        self.tie_if_moving(index);
         self.note_speed(index);
         self.tell_started(index);
         self.predict(index);
@@ -166,7 +167,7 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
             *self.world.modes.of(body.mode) -= 1;
         }
         self.world.masses.pop();
-        self.world.cells.forget_last();
+        self.world.near.forget_last();
         self.traces.forget_last();
         self.queue.forget_last();
         self.memories.pop();
@@ -190,18 +191,21 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
             }
         }
         let mut deepest: Option<(f64, u32)> = None;
-        self.world.cells.for_each_near(particle, 1, |found| {
-            let other = self.world.particle_now(&self.model, found.particle);
-            // Fixed grains may be built up of overlapping ones.
-            if one.mode == Mode::Fixed && other.mode == Mode::Fixed {
-                return;
-            }
-            let apart = self.world.displacement(&self.model, &one, &other).norm();
-            let depth = 0.5 * (one.diameter + other.diameter) - apart;
-            if depth > TOLERANCE && deepest.is_none_or(|(so_far, _)| depth > so_far) {
-                deepest = Some((depth, found.particle));
-            }
-        });
+        let farthest = one.radius() + 0.5 * self.world.largest * scale_at::<M, D>(&self.model, now);
+        self.world
+            .near
+            .for_each_within(particle, farthest, |found| {
+                let other = self.world.particle_now(&self.model, found.particle);
+                // Fixed grains may be built up of overlapping ones.
+                if one.mode == Mode::Fixed && other.mode == Mode::Fixed {
+                    return;
+                }
+                let apart = self.world.displacement(&self.model, &one, &other).norm();
+                let depth = 0.5 * (one.diameter + other.diameter) - apart;
+                if depth > TOLERANCE && deepest.is_none_or(|(so_far, _)| depth > so_far) {
+                    deepest = Some((depth, found.particle));
+                }
+            });
         match deepest {
             None => Ok(()),
             Some((depth, other)) => Err(SetupError::Overlap {

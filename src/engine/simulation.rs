@@ -1,10 +1,11 @@
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
-use crate::engine::body::{World, scale_at};
-use crate::engine::cells::{Cells, Found};
+use crate::engine::body::{World, flight_of, scale_at};
+use crate::engine::cells::Found;
 use crate::engine::counts::{Counts, ModeCounts};
 use crate::engine::guards::Traces;
+use crate::engine::neighbours::Neighbours;
 use crate::engine::queue::EventQueue;
 use crate::engine::search::Slot;
 use crate::engine::settings::{Collapse, Settings};
@@ -131,28 +132,67 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
             .sum()
     }
 
-    /// Lays the cell grid for where the grains are now.
+    /// Lays the grid, and makes the lists, for where the grains are now.
     pub(super) fn lay_grid(&mut self) {
         let now = self.world.clock;
-        let mut reach = self.world.largest * scale_at::<M, D>(&self.model, now);
+        let mut largest = self.world.largest * scale_at::<M, D>(&self.model, now);
         self.regrid_at = Time::NEVER;
         if M::Dynamics::GROWS {
             // Room to grow, so that this is rarely done.
-            reach *= 1.1;
+            largest *= 1.1;
             let rate = self.model.dynamics().growth_rate();
             if rate > 0.0 {
-                let until = (reach / self.world.largest - 1.0) / rate;
+                let until = (largest / self.world.largest - 1.0) / rate;
                 self.regrid_at = Time::from_units(until).max(now);
             }
         }
-        let positions: Vec<_> = (0..self.world.bodies.len() as u32)
+        let count = self.world.bodies.len() as u32;
+        let positions: Vec<_> = (0..count)
             .map(|particle| {
                 let since = self.world.bodies[particle as usize].since;
-                self.world
-                    .flight(&self.model, particle)
-                    .position(now - since)
+                let flight = self.world.flight(&self.model, particle);
+                flight.position(now - since)
             })
             .collect();
-        self.world.cells = Cells::new(self.model.boundary(), &positions, reach);
+        self.world.near = Neighbours::new(self.model.boundary(), &positions, largest);
+        for particle in 0..count {
+            self.tie_if_moving(particle);
+        }
+    }
+
+    /// Sees to it that a grain has a neighbour list if it moves.
+    pub(super) fn tie_if_moving(&mut self, particle: u32) {
+        if !self.world.near.is_tied(particle)
+            && !self.world.flight(&self.model, particle).is_at_rest()
+        {
+            self.tie(particle);
+        }
+    }
+
+    /// Makes the neighbour list of a moving grain for where it is now.
+    pub(super) fn tie(&mut self, particle: u32) {
+        let World {
+            bodies,
+            near,
+            clock,
+            largest,
+            ..
+        } = &mut self.world;
+        let body = &bodies[particle as usize];
+        let flight = flight_of(&self.model, particle, body);
+        let after = *clock - body.since;
+        let scale = if M::Dynamics::GROWS {
+            // As large as they may become on this grid.
+            near.largest() / *largest
+        } else {
+            1.0
+        };
+        let radius_of = |other: u32| scale * bodies[other as usize].radius;
+        near.tie(
+            particle,
+            &flight.position(after),
+            &flight.velocity(after),
+            radius_of,
+        );
     }
 }

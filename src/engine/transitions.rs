@@ -91,6 +91,10 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
             observer,
         );
         self.predict(particle);
+        if self.world.flight(&self.model, particle).is_at_rest() {
+            let position = self.world.bodies[particle as usize].position;
+            self.world.near.release(particle, &position);
+        }
     }
 
     /// The policy hears that a grain has woken.
@@ -199,6 +203,7 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
             Mode::Normal,
         );
         self.traces[particle as usize].partner = Partner::Nobody;
+        self.tie_if_moving(particle);
         self.note_speed(particle);
         self.counts.check_wake += 1;
         self.tell_woken(particle, &WakeCause::Event);
@@ -261,7 +266,7 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
             .fold(0.0, f64::max)
     }
 
-    fn scale_at(&self, time: Time) -> f64 {
+    pub(super) fn scale_at(&self, time: Time) -> f64 {
         crate::engine::body::scale_at::<M, D>(&self.model, time)
     }
 }

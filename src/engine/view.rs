@@ -30,9 +30,7 @@ impl<M: Model<D>, const D: usize> Surroundings<D> for View<'_, M, D> {
         let centre = self.particle(of);
         let scale = crate::engine::body::scale_at::<M, D>(self.model, self.world.clock);
         let farthest = range * 0.5 * (centre.diameter + self.world.largest * scale);
-        let rings = libm::ceil(farthest / self.world.cells.least_edge());
-        let rings = (rings as i32).clamp(1, self.world.cells.rings());
-        self.world.cells.for_each_near(of.0, rings, |found| {
+        self.world.near.for_each_within(of.0, farthest, |found| {
             let other = self.world.particle_now(self.model, found.particle);
             let offset = self.world.displacement(self.model, &centre, &other);
             let contact = 0.5 * (centre.diameter + other.diameter);

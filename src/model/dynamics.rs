@@ -16,15 +16,6 @@ pub struct Motion<const D: usize> {
     pub mode: Mode,
 }
 
-/// The way out of a slab `low ≤ x ≤ high`.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Exit {
-    /// How long after the start of the flight, in √(d/g).
-    pub after: f64,
-    /// Out through the upper face.
-    pub upward: bool,
-}
-
 /// The free motion of one grain from a given instant on.
 ///
 /// Times are counted from the start of the flight, in √(d/g).
@@ -38,17 +29,11 @@ pub trait Flight<const D: usize>: Copy {
     /// The same motion counted from `after` its start.
     fn advanced(&self, after: f64) -> Self;
 
-    /// When, not before `from`, the grain leaves `low ≤ x[axis] ≤ high`
-    /// outwards; `None` if never. A grain that is already outside and moving
-    /// outwards leaves at `from`; one that is outside by rounding and moving
-    /// inwards is inside.
-    fn exit(&self, axis: usize, low: f64, high: f64, from: f64) -> Option<Exit>;
-
     /// A bound on the speed during the first `within`, in √(gd).
     fn speed_bound(&self, within: f64) -> f64;
 
-    /// True if the grain does not move at all: the engine then owes it no cell
-    /// crossings.
+    /// True if the grain does not move at all: the engine then need not follow
+    /// it.
     fn is_at_rest(&self) -> bool;
 }
 

@@ -72,11 +72,14 @@ pub(super) fn first_contact<const D: usize>(
     } else {
         quartic_descent(&GapPolynomial::new(&units), touching, horizon)
     };
+    let back = |after: f64| libm::scalbn(after, time);
     match super::forecast(descent) {
-        Forecast::Never => Forecast::Never,
-        Forecast::Contact(after) => Forecast::Contact(libm::scalbn(after, time)),
-        Forecast::AskAgain(after) => {
-            Forecast::AskAgain(libm::scalbn(after, time).max(f64::MIN_POSITIVE))
+        // Later than any number can say.
+        Forecast::Contact(after) | Forecast::AskAgain(after) if back(after).is_infinite() => {
+            Forecast::Never
         }
+        Forecast::Contact(after) => Forecast::Contact(back(after)),
+        Forecast::AskAgain(after) => Forecast::AskAgain(back(after).max(f64::MIN_POSITIVE)),
+        Forecast::Never => Forecast::Never,
     }
 }

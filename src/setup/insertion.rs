@@ -94,9 +94,9 @@ impl<const D: usize> Grid<D> {
         let edge = each.max(largest * (1.0 + 2.0 * MARGIN));
         let mut cells = [1; D];
         let mut total = 1;
-        for axis in 0..D {
-            cells[axis] = ((region.lengths[axis] / edge) as usize).clamp(1, count.max(1));
-            total *= cells[axis];
+        for (along, length) in cells.iter_mut().zip(region.lengths.iter()) {
+            *along = ((length / edge) as usize).clamp(1, count.max(1));
+            total *= *along;
         }
         Grid {
             region: *region,
@@ -129,10 +129,10 @@ impl<const D: usize> Grid<D> {
         }
         'cells: for mut code in 0..3usize.pow(D as u32) {
             let mut cell = 0;
-            for axis in 0..D {
+            for (axis, own) in own.into_iter().enumerate() {
                 let count = self.cells[axis];
                 // One cell further than wanted, so that it can't be negative.
-                let shifted = own[axis] + code % 3;
+                let shifted = own + code % 3;
                 code /= 3;
                 let along = if self.region.periodic[axis] {
                     (shifted + count - 1) % count
