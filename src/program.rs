@@ -4,8 +4,8 @@
 //! 3 stopped early, with the state saved · 130 and 143 stopped by a signal.
 
 mod cli;
-mod drive;
 mod draw;
+mod drive;
 mod error;
 mod load;
 mod means;

@@ -19,6 +19,8 @@ pub(super) struct Canvas {
     left: f64,
     bottom: f64,
     plane: bool,
+    /// How a grain of each shade is filled.
+    fills: Vec<String>,
 }
 
 /// A number with one decimal, or none if that is 0.
@@ -29,6 +31,11 @@ fn short(value: f64) -> String {
     } else {
         format!("{:.1}", tenths / 10.0)
     }
+}
+
+/// A time for people.
+fn thousandths(time: f64) -> String {
+    format!("{}", (time * 1000.0).round() / 1000.0)
 }
 
 /// The modes that occur, in the order of the legend.
@@ -50,7 +57,7 @@ impl Canvas {
         let width = inner + 2.0 * MARGIN;
         let height = view.height() + lines * LINE + 3.0 * MARGIN;
         let (width, height) = (width.ceil(), height.ceil());
-        let time = short(frame.time.units());
+        let time = thousandths(frame.time.units());
         let mut canvas = Canvas {
             text: format!(
                 "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width}\" height=\"{height}\" \
@@ -60,10 +67,26 @@ impl Canvas {
             left: MARGIN + 0.5 * (inner - view.width()),
             bottom: MARGIN + view.height(),
             plane: frame.dimension == 2,
+            fills: Vec::new(),
         };
-        canvas.add("<rect width=\"100%\" height=\"100%\" fill=\"#fff\"/>\n<defs>\n");
+        canvas.add("<rect width=\"100%\" height=\"100%\" fill=\"#fff\"/>\n");
+        if canvas.plane {
+            let fill = |colour| {
+                let edge = hex(mixed(colour, 0, 0.5));
+                format!(
+                    "fill=\"{}\" stroke=\"{edge}\" stroke-width=\".6\"",
+                    hex(colour)
+                )
+            };
+            canvas.fills = Palette::shades().map(fill).collect();
+            return canvas;
+        }
+        canvas.add("<defs>\n");
         for (number, colour) in Palette::shades().enumerate() {
-            let stop = |at: &str, colour| format!("<stop offset=\"{at}\" stop-color=\"{}\"/>", hex(colour));
+            canvas.fills.push(format!("fill=\"url(#g{number})\""));
+            let stop = |at: &str, colour| {
+                format!("<stop offset=\"{at}\" stop-color=\"{}\"/>", hex(colour))
+            };
             canvas.add(&format!(
                 "<radialGradient id=\"g{number}\" cx=\".36\" cy=\".32\" r=\".75\">{}{}{}</radialGradient>\n",
                 stop("0", mixed(colour, 255, 0.6)),
@@ -118,7 +141,8 @@ impl Canvas {
         // Writing to a String cannot fail.
         let _ = writeln!(
             self.text,
-            "<circle cx=\"{x}\" cy=\"{y}\" r=\"{radius}\" fill=\"url(#g{shade})\"/>"
+            "<circle cx=\"{x}\" cy=\"{y}\" r=\"{radius}\" {}/>",
+            self.fills[shade]
         );
     }
 
@@ -128,23 +152,21 @@ impl Canvas {
         self.add(&format!(
             "<text x=\"{MARGIN}\" y=\"{}\">t = {}, {} grains</text>\n",
             short(y),
-            short(frame.time.units()),
+            thousandths(frame.time.units()),
             frame.grains.len()
         ));
         for (mode, count) in modes(frame) {
             y += LINE;
             let mut x = MARGIN + 7.0;
             for shade in Palette::shades_of(mode) {
-                self.add(&format!(
-                    "<circle cx=\"{}\" cy=\"{}\" r=\"7\" fill=\"url(#g{shade})\"/>",
-                    short(x),
-                    short(y - 5.0)
-                ));
+                let (fill, at) = (&self.fills[shade], (short(x), short(y - 5.0)));
+                let sample = format!("<circle cx=\"{}\" cy=\"{}\" r=\"7\" {fill}/>", at.0, at.1);
+                self.add(&sample);
                 x += 15.0;
             }
             let energies = match (mode, palette.energies()) {
                 (Mode::Normal, Some((low, high))) => {
-                    format!(", kinetic energy {low:.1e} … {high:.1e}")
+                    format!(", kinetic energy {low:.1e} … {high:.1e} mgd")
                 }
                 _ => String::new(),
             };

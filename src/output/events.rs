@@ -35,14 +35,7 @@ impl<W: Write> EventLog<W> {
 
     fn write<const D: usize>(&mut self, event: &Occurrence<D>) -> csv::Result<()> {
         let axes = ["impulse_x", "impulse_y", "impulse_z"];
-        let known = [
-            "time",
-            "kind",
-            "particle",
-            "other",
-            "wall",
-            "impact_speed",
-        ];
+        let known = ["time", "kind", "particle", "other", "wall", "impact_speed"];
         if !self.headed {
             self.headed = true;
             self.table

@@ -61,7 +61,12 @@ impl RunFolder {
             Err(error) if error.kind() == io::ErrorKind::NotADirectory => {
                 return Err(FolderError::NoFolder { folder });
             }
-            Err(source) => return Err(FolderError::Io { file: folder, source }),
+            Err(source) => {
+                return Err(FolderError::Io {
+                    file: folder,
+                    source,
+                });
+            }
         };
         let mut names: Vec<String> = entries
             .filter_map(|entry| Some(entry.ok()?.file_name().to_string_lossy().into_owned()))

@@ -23,7 +23,7 @@ pub struct SeriesRow {
 /// The columns of `series.csv`.
 #[derive(Serialize)]
 struct Record {
-    time: String,
+    time: f64,
     normal: usize,
     falling: usize,
     frozen: usize,
@@ -59,7 +59,7 @@ impl<W: Write> Series<W> {
     /// When the output cannot be written to.
     pub fn write(&mut self, row: &SeriesRow) -> csv::Result<()> {
         self.table.serialize(Record {
-            time: row.time.to_string(),
+            time: row.time.units(),
             normal: row.modes.normal,
             falling: row.modes.falling,
             frozen: row.modes.frozen,

@@ -12,10 +12,8 @@ use crate::engine::{Limits, Simulation, StopReason};
 use crate::error::SetupError;
 use crate::model::{Model, Observer, Occurrence, Surroundings};
 use crate::observe::TrajectoryHash;
-use crate::output::{
-    CollapseReport, EventLog, FractionReport, RunFolder, StoppedBy, Summary,
-};
-use crate::program::drive::files::{Files, Log};
+use crate::output::{CollapseReport, EventLog, FractionReport, RunFolder, StoppedBy, Summary};
+use crate::program::drive::files::{Files, Log, plain};
 use crate::program::drive::pace::{Pace, Samples};
 use crate::program::error::ProgramError;
 use crate::program::means::NormalMean;
@@ -249,18 +247,30 @@ impl<M: Model<D>, const D: usize> Run<'_, M, D> {
     /// How much is done, as far as that can be known, 0 … 1.
     fn share(&self) -> f64 {
         let stop = &self.scenario.stop;
-        let time = stop.time.map_or(0.0, |end| self.simulation.time().units() / end);
+        let time = stop
+            .time
+            .map_or(0.0, |end| self.simulation.time().units() / end);
         let events = stop.events.map_or(0.0, |end| {
             self.simulation.counts().total() as f64 / end as f64
         });
-        let of = |done: usize, all: usize| if all > 0 { done as f64 / all as f64 } else { 0.0 };
+        let of = |done: usize, all: usize| {
+            if all > 0 {
+                done as f64 / all as f64
+            } else {
+                0.0
+            }
+        };
         let landed = of(self.watch.normal.landed(), self.rain);
         let dropped = self
             .dropper
             .as_ref()
             .map_or(0.0, |dropper| of(dropper.dropped, dropper.count));
         let deposited = if stop.all_frozen.unwrap_or(true) {
-            if self.dropper.is_some() { dropped } else { landed }
+            if self.dropper.is_some() {
+                dropped
+            } else {
+                landed
+            }
         } else {
             0.0
         };
@@ -296,7 +306,7 @@ impl<M: Model<D>, const D: usize> Run<'_, M, D> {
             events: counts.into(),
             particles: simulation.mode_counts().into(),
             kinetic_energy: simulation.kinetic_energy(),
-            potential_energy: simulation.potential_energy(),
+            potential_energy: plain(simulation.potential_energy()),
             packing_fraction: fraction.map(|slab| FractionReport {
                 value: slab.value,
                 from: slab.from,

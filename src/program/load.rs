@@ -3,9 +3,7 @@
 use std::path::Path;
 
 use crate::program::error::ProgramError;
-use crate::scenario::{
-    Assignment, Origin, Preset, Scenario, nearest, presets, read, read_text,
-};
+use crate::scenario::{Assignment, Origin, Preset, Scenario, nearest, presets, read, read_text};
 
 /// A scenario and what it is called.
 pub(super) struct Loaded {

@@ -24,7 +24,11 @@ pub(super) fn say(text: &str) -> Result<(), ProgramError> {
 }
 
 pub(super) fn presets() -> Result<u8, ProgramError> {
-    let widest = all_presets().iter().map(|p| p.name.len()).max().unwrap_or(0);
+    let widest = all_presets()
+        .iter()
+        .map(|p| p.name.len())
+        .max()
+        .unwrap_or(0);
     let lines: Vec<String> = all_presets()
         .iter()
         .map(|preset| format!("{:widest$}  {}", preset.name, preset.summary))
@@ -85,7 +89,9 @@ fn check_grains<const D: usize>(
         Gravity::None => {
             Simulation::with_settings(scenario.floating_model(boundary), grains, settings).map(drop)
         }
-        _ => Simulation::with_settings(scenario.gravity_model(boundary), grains, settings).map(drop),
+        _ => {
+            Simulation::with_settings(scenario.gravity_model(boundary), grains, settings).map(drop)
+        }
     };
     tried.map_err(|error| start.refuse(origin, error))?;
     Ok(start.grains.len())

@@ -48,9 +48,9 @@ pub enum Problem {
 #[derive(Debug)]
 pub struct Refusal {
     /// Where.
-    pub place: Place,
+    pub place: Box<Place>,
     /// What is wrong.
-    pub problem: Problem,
+    pub problem: Box<Problem>,
     /// What may have been meant.
     pub hint: Option<String>,
 }
@@ -62,7 +62,7 @@ impl fmt::Display for Refusal {
             write!(f, ":{}:{}", line.number, line.column)?;
         }
         f.write_str(": ")?;
-        match &self.problem {
+        match *self.problem {
             Problem::Syntax { .. } => {}
             Problem::Value { .. } => write!(f, "{} ", self.place.path)?,
             _ => write!(f, "{}: ", self.place.path)?,
@@ -100,12 +100,6 @@ pub enum ScenarioError {
         source: io::Error,
     },
     /// The scenario is refused.
-    #[error("{0}")]
-    Refused(Box<Refusal>),
-}
-
-impl From<Refusal> for ScenarioError {
-    fn from(refusal: Refusal) -> Self {
-        ScenarioError::Refused(Box::new(refusal))
-    }
+    #[error(transparent)]
+    Refused(#[from] Refusal),
 }

@@ -104,8 +104,8 @@ impl Origin {
             }
         };
         Refusal {
-            place: Place { source, path, line },
-            problem,
+            place: Box::new(Place { source, path, line }),
+            problem: Box::new(problem),
             hint: None,
         }
     }
@@ -113,12 +113,12 @@ impl Origin {
     /// A refusal of the text itself.
     fn refuse_text(&self, message: String, line: Option<Line>) -> Refusal {
         Refusal {
-            place: Place {
+            place: Box::new(Place {
                 source: self.name.clone(),
                 path: Path::root(),
                 line,
-            },
-            problem: Problem::Syntax { message },
+            }),
+            problem: Box::new(Problem::Syntax { message }),
             hint: None,
         }
     }
@@ -151,8 +151,9 @@ impl Origin {
             }
         };
         for set in &self.assignments {
-            set.apply(&mut table)
-                .map_err(|message| self.refuse(set.path.clone(), Problem::Assignment { message }))?;
+            set.apply(&mut table).map_err(|message| {
+                self.refuse(set.path.clone(), Problem::Assignment { message })
+            })?;
         }
         Ok(table)
     }
@@ -225,7 +226,10 @@ fn misfit(origin: &Origin, path: Path, message: &str) -> Refusal {
         .replace("unknown field", "unknown key")
         .replace("missing field", "missing key")
         .replace("unknown variant", "unknown choice")
-        .replace("unit variant, expected struct variant", "a bare name, expected a table: { name = { … } }");
+        .replace(
+            "unit variant, expected struct variant",
+            "a bare name, expected a table: { name = { … } }",
+        );
     let at_key = message.starts_with("unknown key");
     Refusal {
         hint,

@@ -150,7 +150,10 @@ mod tests {
         assert_eq!(value("a.b=7.0"), Value::Float(7.0));
         assert_eq!(value("a.b = 1e-4"), Value::Float(1.0e-4));
         assert_eq!(value("output.events=true"), Value::Boolean(true));
-        assert_eq!(value("title=2020-01-02"), Value::String("2020-01-02".into()));
+        assert_eq!(
+            value("title=2020-01-02"),
+            Value::String("2020-01-02".into())
+        );
         assert_eq!(value("title=my run"), Value::String("my run".into()));
         assert_eq!(value("title=\"7\""), Value::String("7".into()));
         assert_eq!(value("title=a=b"), Value::String("a=b".into()));
@@ -168,7 +171,11 @@ mod tests {
         set("d.e.f=6", &mut table).unwrap();
         assert_eq!(table["a"][0]["b"].as_integer(), Some(5));
         assert_eq!(table["d"]["e"]["f"].as_integer(), Some(6));
-        assert!(set("a[1].b=5", &mut table).unwrap_err().contains("1 entries"));
+        assert!(
+            set("a[1].b=5", &mut table)
+                .unwrap_err()
+                .contains("1 entries")
+        );
         assert!(set("c.d=5", &mut table).unwrap_err().contains("integer"));
         assert!(set("a.b=5", &mut table).is_err());
     }

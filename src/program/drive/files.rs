@@ -69,7 +69,7 @@ impl Files {
                 modes: simulation.mode_counts(),
                 counts: *simulation.counts(),
                 kinetic_energy: simulation.kinetic_energy(),
-                potential_energy: simulation.potential_energy(),
+                potential_energy: plain(simulation.potential_energy()),
             })
             .map_err(|error| ProgramError::io("series.csv")(error.into()))
     }
@@ -95,6 +95,11 @@ impl Files {
             .map_err(ProgramError::io("series.csv"))?;
         self.frames.flush().map_err(ProgramError::io("frames.xyz"))
     }
+}
+
+/// The same number, but 0 for −0, which sums of nothing are.
+pub(super) fn plain(number: f64) -> f64 {
+    number + 0.0
 }
 
 /// Tells two states of a run apart: when, and after how many events and grains.
