@@ -169,7 +169,7 @@ impl Reference {
 }
 
 /// In units of [`GapPolynomial::rounding`], 4u times the size of what f is made of.
-const TOLERANCE: f64 = 4.0;
+const TOLERANCE: f64 = 2.0;
 
 /// Panics if `answer` misses a contact deeper, or reports one with a gap wider,
 /// than rounding.
