@@ -52,9 +52,15 @@ pub(super) fn first_root<N: Real>(value: N, slope: N, half_curvature: N) -> N {
     }
 }
 
+/// False for what is no time at all, whatever the horizon.
+#[inline]
+fn is_within<N: Real>(time: N, horizon: N) -> bool {
+    time < N::INFINITY && time <= horizon
+}
+
 #[inline]
 fn up_to<N: Real>(time: N, horizon: N) -> Descent<N> {
-    if time < N::INFINITY && !(time > horizon) {
+    if is_within(time, horizon) {
         Descent::At(time)
     } else {
         Descent::Never
@@ -107,11 +113,11 @@ pub fn cubic_descent<N: Real>([q0, q1, q2, q3]: [N; 4], horizon: N) -> Descent<N
         }
         let step = first_root(value, slope, half_curvature);
         let next = t + step;
-        if !(next < N::INFINITY) || next > horizon {
+        if !is_within(next, horizon) {
             return Descent::Never;
         }
-        let rounding = (q0.abs() + next * (q1.abs() + next * (q2.abs() + next * q3)))
-            .times(4.0 * N::UNIT_ROUNDOFF);
+        let rounding =
+            (q0.abs() + next * (q1.abs() + next * (q2.abs() + next * q3))).times(N::UNIT_ROUNDOFF);
         if next == t || step * step * step * q3 <= rounding {
             return Descent::At(next);
         }
@@ -154,7 +160,7 @@ fn from_apart<N: Real>(gap: &GapPolynomial<N>, horizon: N) -> Descent<N> {
     let guess = first_root(c0, c1, c2);
     // With c₃ ≥ 0 the parabola lies below f for ever.
     let from = if c3 >= zero {
-        if !(guess < N::INFINITY) || guess > horizon {
+        if !is_within(guess, horizon) {
             return Descent::Never;
         }
         guess
@@ -205,7 +211,7 @@ fn concave_root<N: Real>(gap: &GapPolynomial<N>, low: N, guess: N, high: N) -> N
         let size = step.abs();
         let rest = value.abs() * bend * bend * (N::from_f64(2.0) + bend.abs())
             + size * size * size * ((c3 + t * c4.times(4.0)).abs() + size * c4);
-        if rest <= rounding || next == t {
+        if rest <= rounding.times(0.25) || next == t {
             return next;
         }
         t = next;
@@ -248,7 +254,7 @@ fn by_minorants<N: Real>(gap: &GapPolynomial<N>, from: N, horizon: N) -> Descent
             // What f can be at the root of the minorant, by Taylor's formula.
             let rest = (half_curvature - bound).abs()
                 + step * ((c3 + t * c4.times(4.0)).at_least(zero) + step * c4);
-            if root <= trust && step * step * rest <= gap.rounding(t) {
+            if root <= trust && step * step * rest <= gap.rounding(t).times(0.25) {
                 return up_to(t + step, horizon);
             }
             step
@@ -271,7 +277,7 @@ fn by_minorants<N: Real>(gap: &GapPolynomial<N>, from: N, horizon: N) -> Descent
             first_root(value, slope, least)
         };
         let next = t + step;
-        if !(next < N::INFINITY) || next > horizon {
+        if !is_within(next, horizon) {
             return Descent::Never;
         }
         if next == t {
