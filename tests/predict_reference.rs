@@ -338,7 +338,7 @@ fn contact<const D: usize, F: PolynomialFlight<D>>(approach: &Approach<D, F>) ->
     match Polynomial.pair(approach) {
         Forecast::Never => None,
         Forecast::Contact(time) => {
-            assert!(time >= 0.0 && time < f64::INFINITY, "{time}");
+            assert!((0.0..f64::INFINITY).contains(&time), "{time}");
             Some(time)
         }
         Forecast::AskAgain(_) => panic!("a pair can always be settled"),

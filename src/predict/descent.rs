@@ -13,7 +13,7 @@
 use super::Real;
 use super::gap::GapPolynomial;
 
-/// More steps than any input has been seen to need (largest 109, at a graze).
+/// More steps than any input has been seen to need (fewer than 64, at a graze).
 const MOST_STEPS: usize = 256;
 
 /// When a function first falls through zero.
@@ -116,8 +116,8 @@ pub fn cubic_descent<N: Real>([q0, q1, q2, q3]: [N; 4], horizon: N) -> Descent<N
         if !is_within(next, horizon) {
             return Descent::Never;
         }
-        let rounding =
-            (q0.abs() + next * (q1.abs() + next * (q2.abs() + next * q3))).times(N::UNIT_ROUNDOFF);
+        let rounding = (q0.abs() + next * (q1.abs() + next * (q2.abs() + next * q3)))
+            .times(4.0 * N::UNIT_ROUNDOFF);
         if next == t || step * step * step * q3 <= rounding {
             return Descent::At(next);
         }
@@ -211,7 +211,7 @@ fn concave_root<N: Real>(gap: &GapPolynomial<N>, low: N, guess: N, high: N) -> N
         let size = step.abs();
         let rest = value.abs() * bend * bend * (N::from_f64(2.0) + bend.abs())
             + size * size * size * ((c3 + t * c4.times(4.0)).abs() + size * c4);
-        if rest <= rounding.times(0.25) || next == t {
+        if rest <= rounding || next == t {
             return next;
         }
         t = next;
@@ -254,7 +254,7 @@ fn by_minorants<N: Real>(gap: &GapPolynomial<N>, from: N, horizon: N) -> Descent
             // What f can be at the root of the minorant, by Taylor's formula.
             let rest = (half_curvature - bound).abs()
                 + step * ((c3 + t * c4.times(4.0)).at_least(zero) + step * c4);
-            if root <= trust && step * step * rest <= gap.rounding(t).times(0.25) {
+            if root <= trust && step * step * rest <= gap.rounding(t) {
                 return up_to(t + step, horizon);
             }
             step
