@@ -14,6 +14,15 @@ pub mod predict;
 pub mod setup;
 pub mod time;
 
+#[cfg(feature = "program")]
+pub mod draw;
+#[cfg(feature = "program")]
+pub mod output;
+#[cfg(feature = "program")]
+pub mod program;
+#[cfg(feature = "program")]
+pub mod scenario;
+
 pub use error::SetupError;
 pub use particle::{Mode, Particle, ParticleId, Vector, WallId};
 pub use time::Time;

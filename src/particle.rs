@@ -49,6 +49,7 @@ impl fmt::Display for WallId {
 /// The dynamics a grain follows (the paper's section 2; *falling* is the
 /// constant-velocity rain of section 3, *fixed* its base "that never wakes up").
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[cfg_attr(feature = "program", derive(schemars::JsonSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum Mode {
     /// Flies under gravity and collides.

@@ -33,6 +33,7 @@ impl Reason {
 
 /// Where a grain falls asleep.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "program", derive(schemars::JsonSchema))]
 #[serde(rename_all = "snake_case")]
 pub enum Place {
     /// Half-way in time to its next collision, so that nothing is asleep

@@ -1,0 +1,15 @@
+//! What a run leaves behind: a folder of plain files.
+
+mod events;
+mod folder;
+mod series;
+mod summary;
+mod xyz;
+
+pub use events::EventLog;
+pub use folder::{FolderError, RunFolder, write_atomically};
+pub use series::{Series, SeriesRow};
+pub use summary::{
+    CollapseReport, EventCounts, FractionReport, ParticleCounts, StoppedBy, Summary,
+};
+pub use xyz::{Frame, XyzError, XyzReader};

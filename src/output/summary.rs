@@ -1,0 +1,242 @@
+use std::fmt;
+
+use serde::{Deserialize, Serialize};
+
+use crate::engine::{Collapse, Counts, ModeCounts};
+
+/// Why a run ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "snake_case")]
+pub enum StoppedBy {
+    /// No grain is normal or falling, and none is left to drop.
+    AllFrozen,
+    /// The time was up.
+    Time,
+    /// The number of events was reached, or no event lies ahead at all.
+    Events,
+    /// Collisions without end at one instant.
+    Collapse,
+    /// The user.
+    Interrupted,
+    /// An error on the way; the message is in `error`.
+    Error,
+}
+
+/// `summary.json`: how a run ended.
+///
+/// Energies and the packing fraction are those of the last instant.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Summary {
+    /// What the scenario calls itself.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub title: Option<String>,
+    /// When it ended, in √(d/g).
+    pub time: f64,
+    /// Why it ended.
+    pub stop_reason: StoppedBy,
+    /// What went wrong, if anything.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub error: Option<String>,
+    /// The grains that collide without end, if that is why it ended.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub collapse: Option<CollapseReport>,
+    /// The seed.
+    pub seed: u64,
+    /// Events by kind.
+    pub events: EventCounts,
+    /// Grains by mode.
+    pub particles: ParticleCounts,
+    /// In mgd.
+    pub kinetic_energy: f64,
+    /// In mgd.
+    pub potential_energy: f64,
+    /// Of the middle of the deposit, or null if there is none.
+    pub packing_fraction: Option<FractionReport>,
+    /// Time-weighted mean of the number of normal grains while a deposit
+    /// grows, or null.
+    pub mean_normal: Option<f64>,
+    /// The deepest overlap of an event's grains with their neighbours, in d.
+    pub max_overlap: f64,
+    /// Processor time of the run, in seconds.
+    pub cpu_seconds: f64,
+    /// Physical events per second of it.
+    pub events_per_second: f64,
+    /// Fingerprint of all physical events: 16 hexadecimal digits.
+    pub trajectory_hash: String,
+    /// The version of the program.
+    pub version: String,
+}
+
+/// A collapse.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct CollapseReport {
+    /// When, in √(d/g).
+    pub time: f64,
+    /// The grain that collides without end, then those it touches.
+    pub particles: Vec<u32>,
+    /// How many collisions it has made at that instant.
+    pub collisions: u64,
+}
+
+impl From<&Collapse> for CollapseReport {
+    fn from(collapse: &Collapse) -> Self {
+        CollapseReport {
+            time: collapse.time.units(),
+            particles: collapse.particles.iter().map(|id| id.0).collect(),
+            collisions: collapse.collisions,
+        }
+    }
+}
+
+/// Numbers of events.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct EventCounts {
+    /// Physical events: all but transfers and checks that passed.
+    pub total: u64,
+    /// Collisions of two mobile grains.
+    pub pair: u64,
+    /// Collisions with a static grain that stayed.
+    pub frozen: u64,
+    /// Collisions that woke a frozen grain.
+    pub wake: u64,
+    /// Grains that fell asleep.
+    pub sleep: u64,
+    /// Self-checks made.
+    pub check: u64,
+    /// Self-checks that woke a grain.
+    pub check_wake: u64,
+    /// Collisions with walls.
+    pub wall: u64,
+    /// Crossings from one cell of the search grid to the next.
+    pub transfer: u64,
+    /// Collisions that the cut-off V_c made elastic.
+    pub elastic: u64,
+    /// Times a guard acted.
+    pub guard: u64,
+}
+
+impl From<&Counts> for EventCounts {
+    fn from(counts: &Counts) -> Self {
+        EventCounts {
+            total: counts.total(),
+            pair: counts.pair,
+            frozen: counts.frozen,
+            wake: counts.wake,
+            sleep: counts.sleep,
+            check: counts.check,
+            check_wake: counts.check_wake,
+            wall: counts.wall,
+            transfer: counts.transfer,
+            elastic: counts.elastic,
+            guard: counts.guard,
+        }
+    }
+}
+
+/// Numbers of grains.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub struct ParticleCounts {
+    /// All.
+    pub total: usize,
+    /// Normal ones.
+    pub normal: usize,
+    /// Frozen ones.
+    pub frozen: usize,
+    /// Falling ones.
+    pub falling: usize,
+    /// Fixed ones.
+    pub fixed: usize,
+}
+
+impl From<ModeCounts> for ParticleCounts {
+    fn from(modes: ModeCounts) -> Self {
+        ParticleCounts {
+            total: modes.total(),
+            normal: modes.normal,
+            frozen: modes.frozen,
+            falling: modes.falling,
+            fixed: modes.fixed,
+        }
+    }
+}
+
+/// A packing fraction and the heights between which it was taken.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct FractionReport {
+    /// Volume of the grains over volume.
+    pub value: f64,
+    /// From this height, in d.
+    pub from: f64,
+    /// To this height, in d.
+    pub to: f64,
+}
+
+impl fmt::Display for Summary {
+    /// For people.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let reason = match self.stop_reason {
+            StoppedBy::AllFrozen => "all grains are at rest",
+            StoppedBy::Time => "the time is up",
+            StoppedBy::Events if self.particles.normal + self.particles.falling == 0 => {
+                "nothing moves"
+            }
+            StoppedBy::Events => "the number of events is reached, or none is left",
+            StoppedBy::Collapse => "collapsed: collisions without end at one instant",
+            StoppedBy::Interrupted => "interrupted",
+            StoppedBy::Error => "stopped by an error",
+        };
+        writeln!(f, "stopped at t = {:.6}: {reason}", self.time)?;
+        if let Some(error) = &self.error {
+            writeln!(f, "  error             {error}")?;
+        }
+        if let Some(collapse) = &self.collapse {
+            let names: Vec<String> = collapse.particles.iter().map(u32::to_string).collect();
+            writeln!(
+                f,
+                "  collapse          {} collisions of grain {}",
+                collapse.collisions,
+                names.join(", touching ")
+            )?;
+        }
+        let events = &self.events;
+        let grains = &self.particles;
+        writeln!(
+            f,
+            "  grains            {} = {} normal + {} falling + {} frozen + {} fixed",
+            grains.total, grains.normal, grains.falling, grains.frozen, grains.fixed
+        )?;
+        writeln!(
+            f,
+            "  events            {} = {} pair + {} frozen + {} wake + {} sleep + {} wall + {} check wake",
+            events.total,
+            events.pair,
+            events.frozen,
+            events.wake,
+            events.sleep,
+            events.wall,
+            events.check_wake
+        )?;
+        if let Some(fraction) = &self.packing_fraction {
+            writeln!(
+                f,
+                "  packing fraction  {:.4} between z = {:.2} and {:.2}",
+                fraction.value, fraction.from, fraction.to
+            )?;
+        }
+        if let Some(mean) = self.mean_normal {
+            writeln!(f, "  mean normal       {mean:.1} grains")?;
+        }
+        writeln!(
+            f,
+            "  energy            {:.6e} kinetic, {:.6e} potential",
+            self.kinetic_energy, self.potential_energy
+        )?;
+        writeln!(f, "  deepest overlap   {:.1e} d", self.max_overlap)?;
+        writeln!(
+            f,
+            "  processor time    {:.1} s, {:.0} events per second",
+            self.cpu_seconds, self.events_per_second
+        )?;
+        write!(f, "  trajectory hash   {}", self.trajectory_hash)
+    }
+}

@@ -1,0 +1,44 @@
+//! The command-line program.
+//!
+//! Exit codes: 0 done · 1 input or output failed · 2 the input is refused ·
+//! 3 stopped early, with the state saved · 130 and 143 stopped by a signal.
+
+mod cli;
+mod draw;
+mod drive;
+mod error;
+mod load;
+mod means;
+mod processor;
+mod progress;
+mod run;
+mod show;
+mod signals;
+
+pub use error::ProgramError;
+
+use std::process::ExitCode;
+
+use clap::Parser;
+
+use crate::program::cli::{Cli, Command};
+
+/// Runs the program with the arguments of this process, and says how it went.
+#[must_use]
+pub fn main() -> ExitCode {
+    let done = match Cli::parse().command {
+        Command::Run(arguments) => run::run(&arguments),
+        Command::Presets => show::presets(),
+        Command::Preset { name } => show::preset(&name),
+        Command::Check(arguments) => show::check(&arguments),
+        Command::Schema => show::schema(),
+        Command::Draw(arguments) => draw::draw(&arguments),
+    };
+    match done {
+        Ok(code) => ExitCode::from(code),
+        Err(error) => {
+            eprintln!("error: {error}");
+            ExitCode::from(error.exit_code())
+        }
+    }
+}

@@ -1,0 +1,123 @@
+//! What can be typed.
+
+use std::path::PathBuf;
+
+use clap::{Args, Parser, Subcommand};
+
+use crate::scenario::Assignment;
+
+const EXAMPLES: &str = "\
+Examples:
+  grainfall run deposition                      the paper's deposition
+  grainfall run deposition --seed 2 --set parameters.sleep_speed=0.05
+  grainfall preset arch > mine.toml             a scenario to edit
+  grainfall run mine.toml --until 10
+  grainfall draw runs/deposition-1 --time 50
+
+Exit codes:
+  0 done · 1 input or output failed · 2 refused input ·
+  3 stopped early (collapse, error) with the state saved ·
+  130, 143 stopped by Ctrl-C or SIGTERM, with everything written";
+
+const RUN_HELP: &str = "\
+Examples:
+  grainfall run deposition
+  grainfall run deposition --set grains.1.rain.count=1500 --set output.mean_normal_from=20
+  grainfall run bounce --out runs/first
+  grainfall run mine.toml --seed 7 --until 50 --force
+
+The run folder then holds
+  scenario.toml   the scenario as it was run, ready to be run again
+  summary.json    how it ended
+  series.csv      counts by mode, events and energies over time
+  frames.xyz      all grains at some times (extended XYZ, for OVITO)
+  events.csv      every event, if output.events = true
+
+An earlier run is not overwritten without --force (exit code 2). Ctrl-C ends a
+run early, with everything written (exit code 130); a second one ends it at once.";
+
+const SET_HELP: &str = "\
+A value in place of the scenario's, such as parameters.sleep_speed=0.05,
+grains.1.rain.count=1500 or gravity=none; again and again";
+
+/// Event-driven simulation of dense granular matter.
+#[derive(Debug, Parser)]
+#[command(name = "grainfall", version, after_help = EXAMPLES, arg_required_else_help = true)]
+pub(super) struct Cli {
+    #[command(subcommand)]
+    pub(super) command: Command,
+}
+
+/// What to do.
+#[derive(Debug, Subcommand)]
+pub(super) enum Command {
+    /// Run a preset or a scenario file
+    Run(RunArguments),
+    /// List the presets
+    Presets,
+    /// Print the scenario of a preset, to edit
+    #[command(after_help = "Example:\n  grainfall preset deposition > mine.toml")]
+    Preset {
+        /// The preset's name; `grainfall presets` lists them
+        name: String,
+    },
+    /// Say whether a scenario can be run, and run nothing
+    #[command(after_help = "Example:\n  grainfall check mine.toml")]
+    Check(CheckArguments),
+    /// Print the JSON Schema of scenarios
+    Schema,
+    /// Draw the grains of a run as SVG
+    Draw(DrawArguments),
+}
+
+#[derive(Debug, Args)]
+#[command(after_help = RUN_HELP)]
+pub(super) struct RunArguments {
+    /// A preset's name, or a scenario file in TOML or JSON
+    pub(super) scenario: String,
+    /// The seed, in place of the scenario's
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(..=i64::MAX as u64))]
+    pub(super) seed: Option<u64>,
+    /// Where to write [default: runs/NAME-SEED]
+    #[arg(long, value_name = "DIR")]
+    pub(super) out: Option<PathBuf>,
+    #[arg(long, value_name = "PATH=VALUE", help = SET_HELP)]
+    pub(super) set: Vec<Assignment>,
+    /// Stop at this time, in √(d/g): the same as --set stop.time=T
+    #[arg(long, value_name = "T", allow_negative_numbers = true)]
+    pub(super) until: Option<f64>,
+    /// Overwrite an earlier run
+    #[arg(long)]
+    pub(super) force: bool,
+    /// Show no progress, and no summary at the end
+    #[arg(long, short)]
+    pub(super) quiet: bool,
+}
+
+#[derive(Debug, Args)]
+pub(super) struct CheckArguments {
+    /// A scenario file in TOML or JSON, or a preset's name
+    #[arg(value_name = "FILE")]
+    pub(super) scenario: String,
+    #[arg(long, value_name = "PATH=VALUE", help = SET_HELP)]
+    pub(super) set: Vec<Assignment>,
+}
+
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Examples:
+  grainfall draw runs/deposition-1
+  grainfall draw runs/deposition-1 --time 50 --out heap.svg
+
+Colours: purple fixed, dark blue frozen, light blue falling, shades of blue
+normal by kinetic energy. A picture that is there already is replaced.")]
+pub(super) struct DrawArguments {
+    /// A run folder, or an extended XYZ file
+    pub(super) run: PathBuf,
+    /// The frame nearest to this time [default: the last]
+    #[arg(long, value_name = "T")]
+    pub(super) time: Option<f64>,
+    /// Where to write [default: picture.svg beside the frames]
+    #[arg(long, value_name = "FILE.svg")]
+    pub(super) out: Option<PathBuf>,
+}

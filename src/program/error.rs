@@ -1,0 +1,72 @@
+use std::io;
+
+use crate::output::{FolderError, XyzError};
+use crate::scenario::{Refusal, ScenarioError};
+
+/// Why a command could not be carried out.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum ProgramError {
+    /// The scenario can't be read or is refused.
+    #[error(transparent)]
+    Scenario(#[from] ScenarioError),
+    /// There is neither a preset nor a file of this name.
+    #[error("there is no preset and no file `{name}`{hint}")]
+    UnknownScenario {
+        /// The name.
+        name: String,
+        /// What may have been meant, as the rest of the message.
+        hint: String,
+    },
+    /// The run folder can't be had.
+    #[error(transparent)]
+    Folder(#[from] FolderError),
+    /// Something else can't be read or written.
+    #[error("cannot access {file}: {source}")]
+    Io {
+        /// What.
+        file: String,
+        /// Why.
+        source: io::Error,
+    },
+    /// A file of frames can't be read.
+    #[error("{file}: {source}")]
+    Frames {
+        /// Which.
+        file: String,
+        /// Why.
+        source: XyzError,
+    },
+}
+
+impl ProgramError {
+    /// The exit code of the process: 1 if input or output failed, 2 if the
+    /// input is refused.
+    #[must_use]
+    pub fn exit_code(&self) -> u8 {
+        match self {
+            ProgramError::Scenario(ScenarioError::Unreadable { .. })
+            | ProgramError::Folder(FolderError::Io { .. })
+            | ProgramError::Io { .. }
+            | ProgramError::Frames {
+                source: XyzError::Io(_),
+                ..
+            } => 1,
+            ProgramError::Scenario(ScenarioError::Refused(_))
+            | ProgramError::UnknownScenario { .. }
+            | ProgramError::Folder(_)
+            | ProgramError::Frames { .. } => 2,
+        }
+    }
+
+    pub(super) fn io(file: impl Into<String>) -> impl FnOnce(io::Error) -> Self {
+        let file = file.into();
+        |source| ProgramError::Io { file, source }
+    }
+}
+
+impl From<Refusal> for ProgramError {
+    fn from(refusal: Refusal) -> Self {
+        ProgramError::Scenario(refusal.into())
+    }
+}

@@ -1,0 +1,54 @@
+//! From what was typed to a scenario.
+
+use std::path::Path;
+
+use crate::program::error::ProgramError;
+use crate::scenario::{Assignment, Origin, Preset, Scenario, nearest, presets, read, read_text};
+
+/// A scenario and what it is called.
+pub(super) struct Loaded {
+    pub(super) name: String,
+    pub(super) origin: Origin,
+    pub(super) scenario: Scenario,
+}
+
+/// Reads a preset or a scenario file.
+pub(super) fn load(named: &str, assignments: Vec<Assignment>) -> Result<Loaded, ProgramError> {
+    if let Some(preset) = Preset::named(named) {
+        let mut origin = preset.origin();
+        origin.assignments = assignments;
+        let scenario = read_text(&origin)?;
+        return Ok(Loaded {
+            name: named.to_owned(),
+            origin,
+            scenario,
+        });
+    }
+    let path = Path::new(named);
+    if !path.exists() && !looks_like_a_file(path) {
+        return Err(unknown(named));
+    }
+    let (origin, scenario) = read(path, assignments)?;
+    let stem = path.file_stem().unwrap_or_default();
+    Ok(Loaded {
+        name: stem.to_string_lossy().into_owned(),
+        origin,
+        scenario,
+    })
+}
+
+fn looks_like_a_file(path: &Path) -> bool {
+    path.extension().is_some() || path.components().count() > 1
+}
+
+/// There is nothing of this name.
+pub(super) fn unknown(name: &str) -> ProgramError {
+    let names = presets().iter().map(|preset| preset.name);
+    ProgramError::UnknownScenario {
+        name: name.to_owned(),
+        hint: match nearest(name, names) {
+            Some(near) => format!("; did you mean `{near}`?"),
+            None => "; `grainfall presets` lists the presets".to_owned(),
+        },
+    }
+}

@@ -1,0 +1,98 @@
+//! Commands that only print.
+
+use std::io::{self, Write};
+
+use crate::boundary::Cuboid;
+use crate::engine::Simulation;
+use crate::program::cli::CheckArguments;
+use crate::program::error::ProgramError;
+use crate::program::load::{load, unknown};
+use crate::scenario::{
+    Dimension, Gravity, Origin, Preset, Scenario, ScenarioError, SourceKind, Start, json_schema,
+    presets as all_presets,
+};
+
+/// Prints `text` and a new line. A reader that has gone away is no error.
+pub(super) fn say(text: &str) -> Result<(), ProgramError> {
+    let mut out = io::stdout().lock();
+    match writeln!(out, "{text}").and_then(|()| out.flush()) {
+        Err(error) if error.kind() != io::ErrorKind::BrokenPipe => {
+            Err(ProgramError::io("standard output")(error))
+        }
+        _ => Ok(()),
+    }
+}
+
+pub(super) fn presets() -> Result<u8, ProgramError> {
+    let widest = all_presets()
+        .iter()
+        .map(|p| p.name.len())
+        .max()
+        .unwrap_or(0);
+    let lines: Vec<String> = all_presets()
+        .iter()
+        .map(|preset| format!("{:widest$}  {}", preset.name, preset.summary))
+        .collect();
+    say(&lines.join("\n")).map(|()| 0)
+}
+
+pub(super) fn preset(name: &str) -> Result<u8, ProgramError> {
+    let preset = Preset::named(name).ok_or_else(|| unknown(name))?;
+    say(preset.text.trim_end()).map(|()| 0)
+}
+
+pub(super) fn schema() -> Result<u8, ProgramError> {
+    say(&format!("{:#}", json_schema())).map(|()| 0)
+}
+
+pub(super) fn check(arguments: &CheckArguments) -> Result<u8, ProgramError> {
+    let loaded = load(&arguments.scenario, arguments.set.clone())?;
+    let (origin, scenario) = (&loaded.origin, &loaded.scenario);
+    let given = match scenario.dimension {
+        Dimension::Two => check_grains::<2>(origin, scenario)?,
+        Dimension::Three => check_grains::<3>(origin, scenario)?,
+    };
+    let mut parts = Vec::new();
+    if given > 0 {
+        parts.push(format!("{given} given"));
+    }
+    for source in &scenario.grains {
+        match source.kind() {
+            Ok(SourceKind::Base(_)) => parts.push("a base to make".to_owned()),
+            Ok(SourceKind::Rain(rain)) => parts.push(format!("{} to rain", rain.count)),
+            Ok(SourceKind::Gas(gas)) => parts.push(format!("{} of a gas to make", gas.count)),
+            Ok(SourceKind::OneByOne(drops)) => {
+                parts.push(format!("{} to drop one by one", drops.count));
+            }
+            Ok(SourceKind::Grain(_) | SourceKind::File(_)) | Err(_) => {}
+        }
+    }
+    say(&format!(
+        "{} is fine: {} dimensions; grains: {}",
+        origin.name,
+        scenario.axes(),
+        parts.join(", ")
+    ))
+    .map(|()| 0)
+}
+
+/// Checks the grains that are written out or stand in files against each other
+/// and the walls, and says how many there are.
+fn check_grains<const D: usize>(
+    origin: &Origin,
+    scenario: &Scenario,
+) -> Result<usize, ScenarioError> {
+    let start = Start::<D>::given(origin, scenario)?;
+    let (grains, boundary): (_, Cuboid<D>) = (start.grains.clone(), start.boundary.clone());
+    let settings = scenario.settings();
+    let tried = match scenario.gravity {
+        Gravity::None => {
+            Simulation::with_settings(scenario.floating_model(boundary), grains, settings).map(drop)
+        }
+        _ => {
+            Simulation::with_settings(scenario.gravity_model(boundary), grains, settings).map(drop)
+        }
+    };
+    tried.map_err(|error| start.refuse(origin, error))?;
+    Ok(start.grains.len())
+}

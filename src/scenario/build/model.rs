@@ -1,0 +1,201 @@
+use rand_chacha::ChaCha8Rng;
+
+use crate::boundary::{self, Cuboid};
+use crate::collide::Restitution;
+use crate::dynamics::{ForceFree, UniformGravity};
+use crate::engine::{self, Settings};
+use crate::model::Parts;
+use crate::particle::Vector;
+use crate::policy::{self, Never, SlowDescent};
+use crate::predict::Polynomial;
+use crate::scenario::schema::{Phase, Scenario, SelfCheck, Side};
+use crate::setup;
+
+/// The model of a scenario without gravity.
+pub type FloatingModel<const D: usize> =
+    Parts<ForceFree, Polynomial, Restitution, Never, Cuboid<D>>;
+/// The model of a scenario with gravity.
+pub type GravityModel<const D: usize> =
+    Parts<UniformGravity<D>, Polynomial, Restitution, SlowDescent, Cuboid<D>>;
+
+impl Scenario {
+    /// Lower end and length of an axis that is bounded on both sides, in d, and
+    /// whether it is periodic.
+    #[must_use]
+    pub fn lateral(&self, axis: usize) -> Option<(f64, f64, bool)> {
+        match self.side(axis) {
+            Side::Periodic { origin, length } => Some((origin, length, true)),
+            Side::Walls {
+                low: Some(low),
+                high: Some(high),
+                ..
+            } => Some((low, high - low, false)),
+            Side::Walls { .. } | Side::Open => None,
+        }
+    }
+
+    /// The extent across the last axis, in d^(D−1), if that is finite and
+    /// gravity points down that axis: then there may be a deposit.
+    #[must_use]
+    pub fn deposit_area(&self) -> Option<f64> {
+        let axes = self.axes();
+        if !self.gravity.is_down(axes) {
+            return None;
+        }
+        (0..axes - 1).try_fold(1.0, |area, axis| Some(area * self.lateral(axis)?.1))
+    }
+
+    /// How the engine is to work.
+    #[must_use]
+    pub fn settings(&self) -> Settings {
+        let guards = &self.guards;
+        let unless_zero = |number: u32| (number > 0).then_some(number);
+        Settings {
+            guards: engine::Guards {
+                cascade: unless_zero(guards.cascade),
+                exit_speed: guards
+                    .exit_speed
+                    .unwrap_or(0.1 * self.parameters.elastic_speed),
+                floor_speed: guards.floor_speed,
+                hold: guards.hold,
+                collapse: unless_zero(guards.collapse),
+            },
+            sleep_horizon: self.sleep.horizon,
+            ..Settings::default()
+        }
+    }
+
+    /// What collisions do.
+    #[must_use]
+    pub fn collision_rule(&self) -> Restitution {
+        Restitution {
+            restitution: self.parameters.restitution,
+            frozen_restitution: self.parameters.frozen_restitution,
+            elastic_speed: self.parameters.elastic_speed,
+            elastic_on_static: self.parameters.elastic_on_static,
+        }
+    }
+
+    /// Who falls asleep and wakes.
+    #[must_use]
+    pub fn policy(&self) -> SlowDescent {
+        let (parameters, sleep) = (&self.parameters, &self.sleep);
+        SlowDescent {
+            sleep_speed: parameters.sleep_speed,
+            wake_speed: parameters.wake_speed.0,
+            frozen_restitution: parameters.frozen_restitution,
+            energy_store: sleep.energy_store,
+            store_at: sleep.store_at,
+            store_time: sleep.store_time,
+            speed_read: sleep.speed_read,
+            descent_read: sleep.descent_read,
+            comparison: sleep.comparison,
+            wake_read: sleep.wake_read,
+            place: sleep.place,
+            wall_supports: sleep.wall_supports,
+            self_check: self.self_check.as_ref().map(|check| self.self_check(check)),
+            keep_history: sleep.keep_history,
+        }
+    }
+
+    fn self_check(&self, check: &SelfCheck) -> policy::SelfCheck {
+        policy::SelfCheck {
+            interval: check.interval,
+            support_range: check.support_range,
+            support_normals: check.support_normals,
+            phase: match check.phase {
+                Phase::Spread => policy::Phase::Spread { seed: self.seed },
+                Phase::Own => policy::Phase::Own,
+                Phase::Global => policy::Phase::Global,
+            },
+            unsupported_wakes: check.unsupported_wakes,
+        }
+    }
+
+    /// The model without gravity, in which nobody sleeps.
+    #[must_use]
+    pub fn floating_model<const D: usize>(&self, boundary: Cuboid<D>) -> FloatingModel<D> {
+        Parts {
+            dynamics: ForceFree,
+            predictor: Polynomial,
+            collision_rule: self.collision_rule(),
+            state_policy: Never,
+            boundary,
+        }
+    }
+
+    /// The model with gravity, sleep and wake.
+    #[must_use]
+    pub fn gravity_model<const D: usize>(&self, boundary: Cuboid<D>) -> GravityModel<D> {
+        let component = |axis, _| self.gravity.component(axis, D);
+        Parts {
+            dynamics: UniformGravity::new(Vector::from_fn(component)),
+            predictor: Polynomial,
+            collision_rule: self.collision_rule(),
+            state_policy: self.policy(),
+            boundary,
+        }
+    }
+
+    /// The random numbers of the source at `index`. Each source has its own, so
+    /// that changing one leaves the others as they are.
+    #[must_use]
+    pub fn random(&self, index: usize) -> ChaCha8Rng {
+        let mut generator = setup::seeded(self.seed);
+        generator.set_stream(index as u64);
+        generator
+    }
+
+    /// What drops the grains that come one by one, if there are any, and the
+    /// random numbers for it.
+    #[must_use]
+    pub fn dropper<const D: usize>(&self) -> Option<(setup::OneByOne<D>, ChaCha8Rng)> {
+        let index = self
+            .grains
+            .iter()
+            .position(|source| source.one_by_one.is_some())?;
+        let drops = self.grains[index].one_by_one.as_ref()?;
+        let (lengths, origin, periodic) = self.lateral_box();
+        let dropper = setup::OneByOne {
+            sizes: drops.sizes,
+            clearance: drops.clearance,
+            fall_speed: drops.fall_speed,
+            lengths,
+            origin,
+            periodic,
+        };
+        Some((dropper, self.random(index)))
+    }
+
+    /// Lengths, lower corner and periods of the lateral axes; the last entries
+    /// are left at 0.
+    pub(super) fn lateral_box<const D: usize>(&self) -> (Vector<D>, Vector<D>, [bool; D]) {
+        let mut lengths = Vector::zeros();
+        let mut origin = Vector::zeros();
+        let mut periodic = [false; D];
+        for axis in 0..D - 1 {
+            if let Some((low, length, closed)) = self.lateral(axis) {
+                origin[axis] = low;
+                lengths[axis] = length;
+                periodic[axis] = closed;
+            }
+        }
+        (lengths, origin, periodic)
+    }
+
+    pub(super) fn sides<const D: usize>(&self) -> [boundary::Side; D] {
+        std::array::from_fn(|axis| match self.side(axis) {
+            Side::Open => boundary::Side::Open,
+            Side::Periodic { origin, length } => boundary::Side::Periodic { origin, length },
+            Side::Walls {
+                low,
+                high,
+                restitution,
+            } => boundary::Side::Walls {
+                low,
+                high,
+                restitution,
+            },
+        })
+    }
+}

@@ -1,0 +1,197 @@
+//! What a scenario file may say: one schema for TOML and JSON.
+
+mod conditions;
+mod gravity;
+mod parameters;
+mod sleep;
+mod sources;
+
+pub use conditions::{Output, Stop};
+pub use gravity::Gravity;
+pub use parameters::{Guards, Parameters, Threshold};
+pub use sleep::{Phase, SelfCheck, Sleep};
+pub use sources::{Base, Gas, OneByOne, Rain, Source, SourceKind};
+
+use std::borrow::Cow;
+
+use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
+use serde::{Deserialize, Serialize};
+
+/// A whole scenario: everything a run depends on.
+///
+/// Units: the diameter d, the mass m and gravity g are 1, so times are in
+/// √(d/g) and speeds in √(gd). Without gravity the unit of time is yours. The
+/// last axis points up.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+#[schemars(title = "Scenario of grainfall")]
+pub struct Scenario {
+    /// What this is, for people.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub title: Option<String>,
+    /// 2 (disks) or 3 (spheres).
+    pub dimension: Dimension,
+    /// Everything random in a run follows from this number.
+    #[serde(default = "default_seed")]
+    #[schemars(range(min = 0, max = 9_223_372_036_854_775_807_i64))]
+    pub seed: u64,
+    /// `"none"`, a size (pointing down the last axis), or a vector; in g.
+    #[serde(default)]
+    pub gravity: Gravity,
+    /// What bounds each axis, in the order x, y(, z). Left out: open on all
+    /// sides; a `gas` brings its own periodic box.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub boundaries: Vec<Side>,
+    /// The model's numbers, with the paper's symbols.
+    #[serde(default)]
+    pub parameters: Parameters,
+    /// How exactly grains fall asleep and wake; the defaults are the model.
+    #[serde(default)]
+    pub sleep: Sleep,
+    /// Sleeping grains check at intervals whether they are still supported.
+    /// Left out: they don't.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub self_check: Option<SelfCheck>,
+    /// What keeps the number of collisions finite.
+    #[serde(default)]
+    pub guards: Guards,
+    /// When the run ends: at whichever comes first.
+    #[serde(default)]
+    pub stop: Stop,
+    /// What is written, and how often.
+    #[serde(default)]
+    pub output: Output,
+    /// Where the grains come from, in the order of their ids.
+    pub grains: Vec<Source>,
+}
+
+fn default_seed() -> u64 {
+    1
+}
+
+/// The number of dimensions.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(try_from = "i64", into = "i64")]
+pub enum Dimension {
+    /// Disks in a plane.
+    Two,
+    /// Spheres in space.
+    Three,
+}
+
+impl Dimension {
+    /// 2 or 3.
+    #[must_use]
+    pub fn count(self) -> usize {
+        match self {
+            Dimension::Two => 2,
+            Dimension::Three => 3,
+        }
+    }
+}
+
+impl From<Dimension> for i64 {
+    fn from(dimension: Dimension) -> i64 {
+        match dimension {
+            Dimension::Two => 2,
+            Dimension::Three => 3,
+        }
+    }
+}
+
+/// A number of dimensions that is neither 2 nor 3.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("is {0}; 2 or 3 is allowed")]
+pub struct DimensionError(pub i64);
+
+impl TryFrom<i64> for Dimension {
+    type Error = DimensionError;
+
+    fn try_from(count: i64) -> Result<Self, DimensionError> {
+        match count {
+            2 => Ok(Dimension::Two),
+            3 => Ok(Dimension::Three),
+            _ => Err(DimensionError(count)),
+        }
+    }
+}
+
+impl JsonSchema for Dimension {
+    fn inline_schema() -> bool {
+        true
+    }
+
+    fn schema_name() -> Cow<'static, str> {
+        "Dimension".into()
+    }
+
+    fn json_schema(_: &mut SchemaGenerator) -> Schema {
+        json_schema!({ "enum": [2, 3] })
+    }
+}
+
+/// What bounds one axis.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case", deny_unknown_fields)]
+pub enum Side {
+    /// Nothing: grains may go as far as they like.
+    Open,
+    /// The axis closes on itself.
+    Periodic {
+        /// Where the primary cell begins, in d.
+        #[serde(default)]
+        origin: f64,
+        /// Length of the period, in d; at least two diameters.
+        length: f64,
+    },
+    /// A wall below, above, or both.
+    Walls {
+        /// Where the lower wall stands, in d. Left out: there is none.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        low: Option<f64>,
+        /// Where the upper wall stands, in d. Left out: there is none.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        high: Option<f64>,
+        /// Coefficient of restitution of these walls, 0 … 1.
+        restitution: f64,
+    },
+}
+
+impl Scenario {
+    /// The number of axes.
+    #[must_use]
+    pub fn axes(&self) -> usize {
+        self.dimension.count()
+    }
+
+    /// What bounds `axis`, counted from 0.
+    #[must_use]
+    pub fn side(&self, axis: usize) -> Side {
+        self.boundaries.get(axis).copied().unwrap_or(Side::Open)
+    }
+
+    /// The gas that makes its own box, if there is one.
+    #[must_use]
+    pub fn gas(&self) -> Option<&Gas> {
+        self.grains.iter().find_map(|source| source.gas.as_ref())
+    }
+
+    /// The grains that are dropped one after the other, if there are any.
+    #[must_use]
+    pub fn one_by_one(&self) -> Option<&OneByOne> {
+        self.grains
+            .iter()
+            .find_map(|source| source.one_by_one.as_ref())
+    }
+
+    /// Writes every default that depends on other values where it can be read,
+    /// so that the scenario says all that a run depends on.
+    pub fn resolve(&mut self) {
+        self.guards
+            .exit_speed
+            .get_or_insert(0.1 * self.parameters.elastic_speed);
+        self.stop
+            .all_frozen
+            .get_or_insert(!matches!(self.gravity, Gravity::None));
+    }
+}

@@ -1,0 +1,221 @@
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use crate::particle::Mode;
+use crate::setup::Sizes;
+
+/// Where grains come from: one written out here, a file, or a generator.
+///
+/// Exactly one of `position`, `file`, `base`, `rain`, `gas` and `one_by_one`.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+#[schemars(extend("oneOf" = [
+    { "required": ["position"] },
+    { "required": ["file"] },
+    { "required": ["base"] },
+    { "required": ["rain"] },
+    { "required": ["gas"] },
+    { "required": ["one_by_one"] },
+]))]
+pub struct Source {
+    /// One grain: its centre, in d.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub position: Option<Vec<f64>>,
+    /// With `position`: its velocity, in √(gd); 0 if left out.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub velocity: Option<Vec<f64>>,
+    /// With `position`: its diameter, in d; 1 if left out.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub diameter: Option<f64>,
+    /// With `position`: its mass, in m; its diameter to the power of the
+    /// dimension if left out.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub mass: Option<f64>,
+    /// With `position`: `"normal"` (the default), `"falling"`, `"frozen"` or
+    /// `"fixed"`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub mode: Option<Mode>,
+    /// The grains of the last frame of an extended XYZ file, whose path counts
+    /// from this file's folder.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub file: Option<String>,
+    /// A rough bottom of fixed grains.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub base: Option<Base>,
+    /// Grains falling at constant velocity.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub rain: Option<Rain>,
+    /// A disordered gas in a periodic box of its own.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub gas: Option<Gas>,
+    /// Grains dropped during the run, each when everything is at rest.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub one_by_one: Option<OneByOne>,
+}
+
+/// A rough bottom: a slab of fixed grains cut from a random packing, which is
+/// made from the seed. The lateral axes have to be periodic or walled on both
+/// sides.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+pub struct Base {
+    /// How thick, in d.
+    pub thickness: f64,
+    /// Height of its bottom along the last axis, in d.
+    pub bottom: f64,
+    /// Diameters of its grains.
+    pub sizes: Sizes,
+}
+
+impl Default for Base {
+    fn default() -> Self {
+        Base {
+            thickness: 2.0,
+            bottom: 0.0,
+            sizes: Sizes::default(),
+        }
+    }
+}
+
+/// A rain: grains at random places of a column, falling at constant velocity
+/// until their first collision (the paper's section 3). The lateral axes have
+/// to be periodic or walled on both sides.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Rain {
+    /// How many grains.
+    pub count: usize,
+    /// Volume of the grains over the volume of the column.
+    #[serde(default = "default_rain_fraction")]
+    pub packing_fraction: f64,
+    /// How fast they fall, in √(gd).
+    #[serde(default = "default_fall_speed")]
+    pub fall_speed: f64,
+    /// Height of the lowest grain's lowest point at the start, in d. Left out:
+    /// the highest point of the grains listed before, or the floor.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub bottom: Option<f64>,
+    /// Their diameters.
+    #[serde(default)]
+    pub sizes: Sizes,
+}
+
+fn default_rain_fraction() -> f64 {
+    0.0503
+}
+
+fn default_fall_speed() -> f64 {
+    2.5
+}
+
+/// A disordered gas: grown from points (Lubachevsky & Stillinger 1990,
+/// doi:10.1007/BF01025983) in a periodic box whose size follows.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Gas {
+    /// How many grains.
+    pub count: usize,
+    /// Volume of the grains over the volume of the box.
+    pub packing_fraction: f64,
+    /// ⟨m v²⟩/D.
+    #[serde(default = "default_temperature")]
+    pub temperature: f64,
+    /// Proportions of the box, one number per axis. Left out: all equal.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub aspect: Vec<f64>,
+    /// Diameters of the grains.
+    #[serde(default)]
+    pub sizes: Sizes,
+}
+
+fn default_temperature() -> f64 {
+    1.0
+}
+
+/// Grains dropped at random places during the run, each when everything is at
+/// rest (the end of the paper's section 3). The lateral axes have to be
+/// periodic or walled on both sides.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct OneByOne {
+    /// How many grains.
+    pub count: usize,
+    /// How far above the highest surface the lowest point of the new grain
+    /// starts, in d.
+    #[serde(default = "default_clearance")]
+    pub clearance: f64,
+    /// How fast they fall, in √(gd), at constant velocity until the first
+    /// collision.
+    #[serde(default = "default_fall_speed")]
+    pub fall_speed: f64,
+    /// Their diameters.
+    #[serde(default)]
+    pub sizes: Sizes,
+}
+
+fn default_clearance() -> f64 {
+    2.0
+}
+
+/// What a [`Source`] says.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum SourceKind<'a> {
+    /// One grain, with this centre.
+    Grain(&'a [f64]),
+    /// A file.
+    File(&'a str),
+    /// A rough bottom.
+    Base(&'a Base),
+    /// A rain.
+    Rain(&'a Rain),
+    /// A gas.
+    Gas(&'a Gas),
+    /// Grains dropped during the run.
+    OneByOne(&'a OneByOne),
+}
+
+impl Source {
+    /// What this source says, or the names of everything it says if that is
+    /// not exactly one thing.
+    ///
+    /// # Errors
+    ///
+    /// When none or several of the six are given.
+    pub fn kind(&self) -> Result<SourceKind<'_>, Vec<&'static str>> {
+        let given = [
+            ("position", self.position.as_deref().map(SourceKind::Grain)),
+            ("file", self.file.as_deref().map(SourceKind::File)),
+            ("base", self.base.as_ref().map(SourceKind::Base)),
+            ("rain", self.rain.as_ref().map(SourceKind::Rain)),
+            ("gas", self.gas.as_ref().map(SourceKind::Gas)),
+            (
+                "one_by_one",
+                self.one_by_one.as_ref().map(SourceKind::OneByOne),
+            ),
+        ];
+        let mut names = Vec::new();
+        let mut found = None;
+        for (name, kind) in given {
+            if let Some(kind) = kind {
+                names.push(name);
+                found = Some(kind);
+            }
+        }
+        match found {
+            Some(kind) if names.len() == 1 => Ok(kind),
+            _ => Err(names),
+        }
+    }
+
+    /// How many grains it promises, as far as that is known before it is asked.
+    #[must_use]
+    pub fn count(&self) -> usize {
+        match self.kind() {
+            Ok(SourceKind::Grain(_)) => 1,
+            Ok(SourceKind::Rain(rain)) => rain.count,
+            Ok(SourceKind::Gas(gas)) => gas.count,
+            Ok(SourceKind::OneByOne(drops)) => drops.count,
+            Ok(SourceKind::File(_) | SourceKind::Base(_)) | Err(_) => 0,
+        }
+    }
+}
