@@ -4,13 +4,14 @@
 //! implementation of its parts.
 
 mod body;
+mod cascade;
 mod cells;
 mod collisions;
-mod cone;
 mod counts;
 mod events;
 mod guards;
 mod neighbours;
+mod projection;
 mod queue;
 mod search;
 mod settings;

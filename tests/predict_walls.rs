@@ -23,18 +23,18 @@ impl Bowl {
         }
     }
 
-    fn from_centre(&self, position: &Vector<3>, time: Time) -> Vector<3> {
+    fn seen_from_centre(&self, position: &Vector<3>, time: Time) -> Vector<3> {
         position - self.drift * time.units()
     }
 }
 
 impl Wall<3> for Bowl {
     fn distance(&self, position: &Vector<3>, time: Time) -> f64 {
-        self.size - self.from_centre(position, time).norm()
+        self.size - self.seen_from_centre(position, time).norm()
     }
 
     fn normal(&self, position: &Vector<3>, time: Time) -> Vector<3> {
-        let inward = -self.from_centre(position, time);
+        let inward = -self.seen_from_centre(position, time);
         if inward.norm() > 0.0 {
             inward / inward.norm()
         } else {

@@ -1,8 +1,7 @@
 //! Carrying out collisions.
 
-use crate::engine::cone::{Touch, project};
+use crate::engine::cascade::Relief;
 use crate::engine::search::{Partner, Slot};
-use crate::engine::settings::Collapse;
 use crate::engine::simulation::Simulation;
 use crate::engine::view::View;
 use crate::model::{
@@ -12,9 +11,6 @@ use crate::model::{
 };
 use crate::particle::{Mode, Particle, ParticleId, Vector, WallId};
 use crate::time::Time;
-
-/// Squared distance over which two surfaces count as touching, in d².
-const TOUCHING: f64 = 1.0e-11;
 
 impl<M: Model<D>, const D: usize> Simulation<M, D> {
     /// A mobile grain meets another grain now.
@@ -115,8 +111,11 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
             };
             self.tell_woken(b, &cause);
         }
-        let caught = self.end_cascade(a, run);
-        let caught_other = two_mobile && self.end_cascade(b, run_other);
+        let relief = self.end_cascade(a, run);
+        let mut relief_other = Relief::default();
+        if two_mobile && !relief.disturbed.contains(&b) {
+            relief_other = self.end_cascade(b, run_other);
+        }
 
         match kind {
             OccurrenceKind::Pair => self.counts.pair += 1,
@@ -145,9 +144,14 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
         if two_mobile {
             self.predict(b);
         }
-        self.begin_sleep(a, sleep, caught, observer);
+        for &other in relief.disturbed.iter().chain(&relief_other.disturbed) {
+            if other != a && other != b {
+                self.predict(other);
+            }
+        }
+        self.begin_sleep(a, sleep, relief.caught, observer);
         if two_mobile {
-            self.begin_sleep(b, sleep_other, caught_other, observer);
+            self.begin_sleep(b, sleep_other, relief_other.caught, observer);
         }
     }
 
@@ -177,7 +181,7 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
         let run = self.traces.collided(particle, Partner::Wall(wall), now);
         self.traces.hold(particle, None, now);
         self.settle(particle, one.position, rebound.velocity);
-        let caught = self.end_cascade(particle, run);
+        let relief = self.end_cascade(particle, run);
         self.counts.wall += 1;
         self.counts.elastic += u64::from(rebound.elastic);
         let velocity = self.world.bodies[particle as usize].velocity;
@@ -198,7 +202,12 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
             observer,
         );
         self.predict(particle);
-        self.begin_sleep(particle, sleep, caught, observer);
+        for &other in &relief.disturbed {
+            if other != particle {
+                self.predict(other);
+            }
+        }
+        self.begin_sleep(particle, sleep, relief.caught, observer);
     }
 
     /// An impact whose obstacle has still to be filled in.
@@ -293,109 +302,13 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
 
     /// Writes a grain's state after a collision; whatever it was about to do is
     /// void.
-    fn settle(&mut self, particle: u32, position: Vector<D>, velocity: Vector<D>) {
+    pub(super) fn settle(&mut self, particle: u32, position: Vector<D>, velocity: Vector<D>) {
         let model = &self.model;
         self.world
             .write(model, particle, position, velocity, Mode::Normal);
         self.slots[particle as usize] = Slot::EMPTY;
         self.tie_if_moving(particle);
         self.note_speed(particle);
-    }
-
-    /// The cascade guard and the collapse detector; true if the grain is caught
-    /// between static ones and has to sleep where it is.
-    fn end_cascade(&mut self, particle: u32, run: u32) -> bool {
-        let guards = self.settings.guards;
-        if guards.collapse.is_some_and(|limit| run >= limit) && self.collapse.is_none() {
-            let touched = self.touched(particle);
-            let mut particles = vec![ParticleId(particle)];
-            particles.extend(touched.iter().filter_map(|(_, id)| id.map(ParticleId)));
-            if let Partner::Particle(last) = self.traces[particle as usize].partner
-                && !particles.contains(&ParticleId(last))
-            {
-                particles.push(ParticleId(last));
-            }
-            self.collapse = Some(Collapse {
-                time: self.world.clock,
-                particles,
-                collisions: u64::from(run),
-            });
-        }
-        if !guards
-            .cascade
-            .is_some_and(|limit| run >= limit && run % limit == 0)
-        {
-            return false;
-        }
-        let touches: Vec<Touch<D>> = self.touched(particle).into_iter().map(|t| t.0).collect();
-        if touches.is_empty() {
-            return false;
-        }
-        self.counts.guard += 1;
-        let before = self.world.bodies[particle as usize].velocity;
-        let Some(resting) = project(before, &touches, 0.0) else {
-            return true;
-        };
-        let mut exit = guards.exit_speed;
-        let mut leaving = project(before, &touches, exit);
-        // In a narrow cone a small exit speed along the normals is a large one
-        // along the axis.
-        let most = 10.0 * guards.exit_speed;
-        if let Some(fast) = leaving
-            && (fast - resting).norm() > most
-        {
-            exit *= most / (fast - resting).norm();
-            leaving = project(before, &touches, exit);
-        }
-        match leaving {
-            Some(velocity) => {
-                self.world.bodies[particle as usize].velocity = velocity;
-                false
-            }
-            None if resting.norm() <= most => true,
-            None => {
-                self.world.bodies[particle as usize].velocity = resting;
-                false
-            }
-        }
-    }
-
-    /// Static surfaces that a grain touches now.
-    fn touched(&self, particle: u32) -> Vec<(Touch<D>, Option<u32>)> {
-        let now = self.world.clock;
-        let one = self.world.particle_now(&self.model, particle);
-        let mut touches = Vec::new();
-        let farthest = one.radius() + 0.5 * self.world.largest * self.scale_at(now) + TOUCHING;
-        self.world
-            .near
-            .for_each_within(particle, farthest, |found| {
-                let other = self.world.particle_now(&self.model, found.particle);
-                if other.mode.is_mobile() {
-                    return;
-                }
-                let apart = self.world.displacement(&self.model, &other, &one);
-                let contact = 0.5 * (one.diameter + other.diameter);
-                if apart.norm_squared() - contact * contact < TOUCHING {
-                    let normal = apart.normalize();
-                    touches.push((
-                        Touch {
-                            normal,
-                            speed: other.velocity.dot(&normal),
-                        },
-                        Some(found.particle),
-                    ));
-                }
-            });
-        // By id, so that the outcome does not depend on the grid.
-        touches.sort_by_key(|touch| touch.1);
-        for wall in self.model.boundary().walls() {
-            if wall.distance(&one.position, now) - one.radius() < 0.5 * TOUCHING {
-                let normal = wall.normal(&one.position, now);
-                let speed = wall.velocity(&one.position, now).dot(&normal);
-                touches.push((Touch { normal, speed }, None));
-            }
-        }
-        touches
     }
 
     pub(super) fn report<O: Observer<D>>(&self, occurrence: &Occurrence<D>, observer: &mut O) {

@@ -14,8 +14,10 @@ use crate::time::Time;
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Guards {
     /// After this many collisions of one grain at one instant (closer together
-    /// than 10⁻¹² √(d/g)) its velocity is projected on the cone of directions
-    /// that all static contacts it touches admit: the limit of the cascade.
+    /// than 10⁻¹² √(d/g)), and each time as many more, the velocities of all
+    /// normal grains that touch it, directly or through each other, are
+    /// projected on the cone of those with which no contact closes: the limit
+    /// of the cascade. A grain that no velocity would free falls asleep.
     /// `None` switches it off.
     pub cascade: Option<u32>,
     /// Normal speed with which a projected grain leaves its contacts, in

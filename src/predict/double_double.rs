@@ -76,6 +76,9 @@ impl Add for DoubleDouble {
     #[inline]
     fn add(self, other: Self) -> Self {
         let (high, high_error) = two_sum(self.high, other.high);
+        if !high.is_finite() {
+            return Self::from_f64(high);
+        }
         let (low, low_error) = two_sum(self.low, other.low);
         let (high, error) = quick_two_sum(high, high_error + low);
         Self::renormalised(high, error + low_error)
@@ -109,6 +112,9 @@ impl Mul for DoubleDouble {
     #[inline]
     fn mul(self, other: Self) -> Self {
         let (high, error) = two_product(self.high, other.high);
+        if !high.is_finite() {
+            return Self::from_f64(high);
+        }
         Self::renormalised(
             high,
             error + (self.high * other.low + self.low * other.high),

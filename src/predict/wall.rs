@@ -90,7 +90,7 @@ pub(super) fn general<const D: usize, F: PolynomialFlight<D>, W: Wall<D>>(
             advance = advance.max(step.min(covered(margin, speed, acceleration)));
         }
         t += advance;
-        if !(t < f64::MAX) || t > horizon {
+        if t >= f64::MAX || t > horizon {
             return Forecast::Never;
         }
     }

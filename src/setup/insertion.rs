@@ -210,7 +210,7 @@ mod tests {
             let mut volume = 0.0;
             while volume < share * region.volume() {
                 let diameter = 0.5 + crate::setup::random::uniform(&mut rng);
-                volume += 0.523_598_8 * diameter * diameter * diameter;
+                volume += std::f64::consts::FRAC_PI_6 * diameter * diameter * diameter;
                 diameters.push(diameter);
             }
             if let Ok(places) = insert(&region, &diameters, &mut rng) {
