@@ -207,10 +207,7 @@ impl<const D: usize> Cells<D> {
         }
         let mut at = low;
         loop {
-            let mut index = 0;
-            for axis in 0..D {
-                index += self.wrapped(at[axis], axis) * self.axes[axis].stride;
-            }
+            let index = self.index(&at);
             let mut other = self.heads[index];
             while other != NONE {
                 let seat = &self.seats[other as usize];
@@ -261,11 +258,15 @@ impl<const D: usize> Cells<D> {
         }
     }
 
-    fn index_of(&self, particle: u32) -> usize {
-        let cell = self.seats[particle as usize].cell;
+    #[inline]
+    fn index(&self, cell: &[i32; D]) -> usize {
         (0..D)
             .map(|axis| self.wrapped(cell[axis], axis) * self.axes[axis].stride)
             .sum()
+    }
+
+    fn index_of(&self, particle: u32) -> usize {
+        self.index(&self.seats[particle as usize].cell)
     }
 
     fn link(&mut self, particle: u32) {

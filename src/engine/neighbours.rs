@@ -259,7 +259,11 @@ impl<const D: usize> Neighbours<D> {
 /// neighbours as wanted where there are `crowding` centres in the volume d^D.
 fn leash_for(crowding: f64, dimension: usize) -> f64 {
     // A disk or a ball; in more dimensions good enough for this purpose.
-    let ball = if dimension == 2 { 3.14 } else { 4.19 };
+    let ball = if dimension == 2 {
+        std::f64::consts::PI
+    } else {
+        4.0 / 3.0 * std::f64::consts::PI
+    };
     let radius = libm::pow(WANTED / (crowding * ball), 1.0 / dimension as f64);
     (0.5 * (radius - 1.0)).clamp(SHORT_LEASH, LONG_LEASH)
 }
