@@ -376,7 +376,7 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
             self.scratch = found;
             // Whoever is farther than this away cannot come first.
             let reach = self.reach(particle, first - start);
-            if reach <= looked || self.world.near.is_everything(looked) {
+            if reach <= looked || self.world.near.is_everything(particle, looked) {
                 return any.then_some(first - start);
             }
             looked = reach;

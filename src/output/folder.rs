@@ -1,5 +1,5 @@
 use std::fs::{self, File};
-use std::io::{self, BufWriter, Write};
+use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
 /// The files that a run writes, by which a run folder is known.
@@ -117,19 +117,17 @@ impl RunFolder {
         self.path.join(name)
     }
 
-    /// A new file in it.
+    /// A new file in it, without a buffer.
     ///
     /// # Errors
     ///
     /// When the file can't be made.
-    pub fn writer(&self, name: &str) -> Result<BufWriter<File>, FolderError> {
+    pub fn create_file(&self, name: &str) -> Result<File, FolderError> {
         let file = self.file(name);
-        File::create(&file)
-            .map(BufWriter::new)
-            .map_err(|source| FolderError::Io {
-                file: file.display().to_string(),
-                source,
-            })
+        File::create(&file).map_err(|source| FolderError::Io {
+            file: file.display().to_string(),
+            source,
+        })
     }
 
     /// Writes a whole file, so that it is there complete or not at all.

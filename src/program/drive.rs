@@ -14,7 +14,7 @@ use crate::model::{Model, Observer, Occurrence, Surroundings};
 use crate::observe::TrajectoryHash;
 use crate::output::{CollapseReport, EventLog, FractionReport, RunFolder, StoppedBy, Summary};
 use crate::program::drive::files::{Files, Log, plain};
-use crate::program::drive::pace::{Pace, Samples};
+use crate::program::drive::pace::{Pace, Quiet, Samples};
 use crate::program::error::ProgramError;
 use crate::program::means::NormalMean;
 use crate::program::processor::ProcessorClock;
@@ -103,12 +103,12 @@ pub(super) fn drive<M: Model<D>, const D: usize>(
     let grains = std::mem::take(&mut start.grains);
     let clock = ProcessorClock::start();
     let simulation = Simulation::with_settings(model, grains, scenario.settings())
-        .map_err(|error| start.refuse(&job.origin, error))?;
+        .map_err(|error| start.refuse(&job.origin, scenario, error))?;
     let snapshot = simulation.snapshot();
     let folder = RunFolder::create(&job.folder, job.force)?;
     let files = Files::create(&folder, scenario, start.files())?;
     let log = match scenario.output.events {
-        true => Some(EventLog::new(folder.writer("events.csv")?)),
+        true => Some(EventLog::new(folder.create_file("events.csv")?)),
         false => None,
     };
     let dropper = scenario.dropper().map(|(source, random)| Dropper {
@@ -162,6 +162,7 @@ impl<M: Model<D>, const D: usize> Run<'_, M, D> {
         let output = &self.scenario.output;
         let mut samples = Samples::new(output.series_every, output.frames_every);
         let mut pace = Pace::new();
+        let mut quiet = Quiet::new(self.simulation.time());
         self.files.row(&self.simulation)?;
         self.files.frame(&self.simulation)?;
         loop {
@@ -179,7 +180,7 @@ impl<M: Model<D>, const D: usize> Run<'_, M, D> {
             };
             pace.begin();
             let why = self.simulation.run(&limits, &mut self.watch);
-            pace.end();
+            pace.end(why == StopReason::Time && until < samples.next());
             let events = self.simulation.counts().total();
             match why {
                 StopReason::Collapse(collapse) => {
@@ -201,6 +202,9 @@ impl<M: Model<D>, const D: usize> Run<'_, M, D> {
                     let due = samples.due(until, events);
                     if until >= self.end {
                         return Ok(End::new(StoppedBy::Time, 0));
+                    }
+                    if self.scenario.stop.time.is_none() && quiet.lasts(until, events) {
+                        return Ok(End::new(StoppedBy::Events, 0));
                     }
                     if due.row {
                         self.files.row(&self.simulation)?;

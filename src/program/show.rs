@@ -93,6 +93,6 @@ fn check_grains<const D: usize>(
             Simulation::with_settings(scenario.gravity_model(boundary), grains, settings).map(drop)
         }
     };
-    tried.map_err(|error| start.refuse(origin, error))?;
+    tried.map_err(|error| start.refuse(origin, scenario, error))?;
     Ok(start.grains.len())
 }

@@ -10,7 +10,7 @@ use std::io::BufReader;
 use crate::boundary::{self, Cuboid};
 use crate::error::SetupError;
 use crate::output::{Frame, XyzReader};
-use crate::particle::{Mode, Particle, Vector};
+use crate::particle::{Mode, Particle, ParticleId, Vector};
 use crate::scenario::error::{Problem, ScenarioError};
 use crate::scenario::path::Path;
 use crate::scenario::read::Origin;
@@ -170,13 +170,26 @@ impl<const D: usize> Start<D> {
     /// A refusal of this start for what the engine found wrong with it, told at
     /// the source of the grain in question.
     #[must_use]
-    pub fn refuse(&self, origin: &Origin, error: SetupError) -> ScenarioError {
-        let of = |id: crate::particle::ParticleId| source_path(self.source_of(id.index()));
+    pub fn refuse(&self, origin: &Origin, scenario: &Scenario, error: SetupError) -> ScenarioError {
+        let of = |id: ParticleId| {
+            let index = self.source_of(id.index());
+            let path = source_path(index);
+            match scenario.grains.get(index).map(Source::kind) {
+                Some(Ok(SourceKind::Grain(_))) => path.key("position"),
+                _ => path,
+            }
+        };
         let (path, hint) = match &error {
-            SetupError::Particle { id, .. } | SetupError::OutsideWall { id, .. } => (of(*id), None),
+            SetupError::Particle { id, .. } => (of(*id), None),
+            SetupError::OutsideWall { id, wall, .. } => {
+                (of(*id), wall_place(scenario, wall.index()))
+            }
             SetupError::Overlap { first, second, .. } => {
-                let hint = format!("grain {first} is of {}", of(*first));
-                (of(*second), Some(hint))
+                let place = of(*first).to_string();
+                (
+                    of(*second),
+                    Some(format!("grain {first} is that of {place}")),
+                )
             }
             SetupError::PeriodTooShort { axis, .. } => {
                 (Path::root().key("boundaries").index(*axis), None)
@@ -187,6 +200,23 @@ impl<const D: usize> Start<D> {
         refusal.hint = hint;
         refusal.into()
     }
+}
+
+/// Where in the scenario a wall stands: they are numbered axis by axis, the
+/// lower before the upper.
+fn wall_place(scenario: &Scenario, wall: usize) -> Option<String> {
+    let walls = (0..scenario.axes()).flat_map(|axis| {
+        let (low, high) = match scenario.side(axis) {
+            Side::Walls { low, high, .. } => (low, high),
+            Side::Periodic { .. } | Side::Open => (None, None),
+        };
+        let place = move |name: &str| format!("boundaries[{axis}].walls.{name}");
+        let low = low.map(|_| place("low"));
+        let high = high.map(|_| place("high"));
+        low.into_iter().chain(high)
+    });
+    let place = walls.into_iter().nth(wall)?;
+    Some(format!("wall {wall} is {place}"))
 }
 
 fn source_path(index: usize) -> Path {

@@ -57,12 +57,7 @@ impl Path {
     /// True if this is `other` or something inside it.
     #[must_use]
     pub fn is_within(&self, other: &Path) -> bool {
-        self.0.len() >= other.0.len()
-            && self
-                .0
-                .iter()
-                .zip(&other.0)
-                .all(|(a, b)| a.to_string() == b.to_string())
+        self.0.len() >= other.0.len() && self.0.iter().zip(&other.0).all(|(a, b)| a == b)
     }
 }
 
@@ -92,6 +87,7 @@ impl fmt::Display for Segment {
 }
 
 impl fmt::Display for Path {
+    /// Keys are cut after 60 letters.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         if self.0.is_empty() {
             return f.write_str("the scenario");
@@ -99,8 +95,8 @@ impl fmt::Display for Path {
         for (place, segment) in self.0.iter().enumerate() {
             match segment {
                 Segment::Index(index) => write!(f, "[{index}]")?,
-                Segment::Key(key) if place == 0 => f.write_str(key)?,
-                Segment::Key(key) => write!(f, ".{key}")?,
+                Segment::Key(key) if place == 0 => write!(f, "{key:.60}")?,
+                Segment::Key(key) => write!(f, ".{key:.60}")?,
             }
         }
         Ok(())

@@ -91,7 +91,8 @@ impl Origin {
             .assignments
             .iter()
             .rev()
-            .find(|set| path.is_within(&set.path));
+            // A key that does not exist may have been made on the way.
+            .find(|set| path.is_within(&set.path) || at_key && set.path.is_within(&path));
         let (source, line) = match set {
             Some(set) => (set.text.clone(), None),
             None => {
@@ -132,7 +133,9 @@ impl Origin {
             })?,
             Format::Json => {
                 let tree: Tree = serde_json::from_str(&self.text).map_err(|error| {
-                    let line = self.text.lines().nth(error.line().saturating_sub(1));
+                    // At the end of the text the line may be one that is not there.
+                    let mut lines = self.text.lines();
+                    let line = lines.nth(error.line().saturating_sub(1)).or(Some(""));
                     let line = line.map(|text| Line {
                         number: error.line(),
                         column: error.column().max(1),
@@ -199,16 +202,18 @@ pub fn read_text(origin: &Origin) -> Result<Scenario, Refusal> {
     }
     let mut scenario: Scenario = serde_path_to_error::deserialize(tree).map_err(|error| {
         let path = Path::from(error.path());
-        misfit(origin, path, &error.into_inner().to_string())
+        misfit(origin, path, error.into_inner().message())
     })?;
     validate(origin, &scenario)?;
     scenario.resolve();
     Ok(scenario)
 }
 
+/// The longest message that is passed on, in characters.
+const LONGEST_MESSAGE: usize = 600;
+
 /// Turns what serde says into a refusal that says what to write instead.
 fn misfit(origin: &Origin, path: Path, message: &str) -> Refusal {
-    let message = message.trim_end();
     let quoted: Vec<&str> = message.split('`').skip(1).step_by(2).collect();
     let unknown = message.starts_with("unknown field") || message.starts_with("unknown variant");
     let hint = quoted
@@ -231,6 +236,7 @@ fn misfit(origin: &Origin, path: Path, message: &str) -> Refusal {
             "a bare name, expected a table: { name = { … } }",
         );
     let at_key = message.starts_with("unknown key");
+    let message = message.chars().take(LONGEST_MESSAGE).collect();
     Refusal {
         hint,
         ..origin.refuse_at(path, Problem::Schema { message }, at_key)

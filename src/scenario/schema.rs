@@ -101,7 +101,7 @@ impl From<Dimension> for i64 {
 
 /// A number of dimensions that is neither 2 nor 3.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("is {0}; 2 or 3 is allowed")]
+#[error("{0} dimensions; 2 or 3 is allowed")]
 pub struct DimensionError(pub i64);
 
 impl TryFrom<i64> for Dimension {

@@ -73,7 +73,7 @@ impl Assignment {
                 Value::Array(list) => Place::List(list),
                 _ => {
                     return Err(format!(
-                        "{so_far} is a {kind}, so nothing can be set inside it; set {so_far} itself"
+                        "{so_far} is no table ({kind}), so nothing can be set inside it; set {so_far} itself"
                     ));
                 }
             };

@@ -93,7 +93,8 @@ impl Checker<'_> {
                 )?;
                 let size = vector.iter().fold(0.0_f64, |most, x| most.max(x.abs()));
                 let allowed = "one component has to differ from 0; write \"none\" for no gravity";
-                self.require(size > 0.0 && size <= FARTHEST, path, "zero", allowed)
+                let found = format!("{vector:?}");
+                self.require(size > 0.0 && size <= FARTHEST, path, found, allowed)
             }
         }
     }

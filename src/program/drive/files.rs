@@ -2,6 +2,7 @@
 
 use std::fs::File;
 use std::io::{BufWriter, Write};
+use std::time::{Duration, Instant};
 
 use crate::engine::Simulation;
 use crate::model::Model;
@@ -10,13 +11,18 @@ use crate::program::error::ProgramError;
 use crate::scenario::Scenario;
 use crate::time::Time;
 
-/// `events.csv`.
-pub(super) type Log = EventLog<BufWriter<File>>;
+/// `events.csv`; the table has a buffer of its own.
+pub(super) type Log = EventLog<File>;
+
+/// How often what is in buffers goes to the disk, so that a run can be followed.
+const FLUSH_EVERY: Duration = Duration::from_secs(1);
 
 /// `series.csv` and `frames.xyz`.
 pub(super) struct Files {
-    series: Series<BufWriter<File>>,
+    /// The table has a buffer of its own.
+    series: Series<File>,
     frames: BufWriter<File>,
+    flushed: Instant,
     last_row: Option<(Time, u64)>,
     last_frame: Option<(Time, u64)>,
 }
@@ -47,8 +53,9 @@ impl Files {
         );
         folder.write("scenario.toml", (head + &text).as_bytes())?;
         Ok(Files {
-            series: Series::new(folder.writer("series.csv")?),
-            frames: folder.writer("frames.xyz")?,
+            series: Series::new(folder.create_file("series.csv")?),
+            frames: BufWriter::new(folder.create_file("frames.xyz")?),
+            flushed: Instant::now(),
             last_row: None,
             last_frame: None,
         })
@@ -71,7 +78,12 @@ impl Files {
                 kinetic_energy: simulation.kinetic_energy(),
                 potential_energy: plain(simulation.potential_energy()),
             })
-            .map_err(|error| ProgramError::io("series.csv")(error.into()))
+            .map_err(|error| ProgramError::io("series.csv")(error.into()))?;
+        if self.flushed.elapsed() >= FLUSH_EVERY {
+            self.flushed = Instant::now();
+            self.flush()?;
+        }
+        Ok(())
     }
 
     /// Writes a frame, unless the last one says the same.

@@ -41,13 +41,41 @@ impl Pace {
         self.began = Instant::now();
     }
 
-    pub(super) fn end(&mut self) {
+    /// The slice is over; `whole` if nothing else had ended it before.
+    pub(super) fn end(&mut self, whole: bool) {
         let took = self.began.elapsed();
-        if took < SHORT {
+        if took < SHORT && whole {
             self.slice = (self.slice * 2.0).min(1.0e9);
         } else if took > LONG {
             self.slice = (self.slice / 2.0).max(1.0e-9);
         }
+    }
+}
+
+/// A run without an end in time ends when nothing has happened for so long, in
+/// √(d/g).
+const QUIET: f64 = 1.0e6;
+
+/// Whether anything still happens.
+pub(super) struct Quiet {
+    events: u64,
+    since: Time,
+}
+
+impl Quiet {
+    pub(super) fn new(now: Time) -> Self {
+        Quiet {
+            events: 0,
+            since: now,
+        }
+    }
+
+    /// True if nothing has happened for a very long time.
+    pub(super) fn lasts(&mut self, now: Time, events: u64) -> bool {
+        if events != self.events {
+            (self.events, self.since) = (events, now);
+        }
+        now - self.since >= QUIET
     }
 }
 

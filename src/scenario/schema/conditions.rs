@@ -5,7 +5,8 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct Stop {
-    /// At this time, in √(d/g).
+    /// At this time, in √(d/g). Left out: at no set time, but a run in which
+    /// nothing happens for 10⁶ √(d/g) ends.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub time: Option<f64>,
     /// After this many physical events.
