@@ -256,8 +256,10 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
         self.world
             .near
             .for_each_within(particle, farthest, |found| {
-                let other = self.world.particle_now(&self.model, found.particle);
-                let apart = self.world.displacement(&self.model, &other, &one);
+                let Some((other, offset)) = self.world.nearest(&self.model, &one, &found) else {
+                    return;
+                };
+                let apart = -offset;
                 let contact = 0.5 * (one.diameter + other.diameter);
                 if apart.norm_squared() - contact * contact < tolerance {
                     touched.push((found.particle, apart.normalize(), other));
