@@ -126,8 +126,8 @@ impl std::ops::Add<f64> for Time {
     fn add(self, after: f64) -> Time {
         let sum = self.rest + after;
         let scaled = sum * TICKS_PER_UNIT;
-        // Beyond this the count of ticks could not be added; NaN fails too.
-        if !(scaled.abs() < 9.0e18) || self == Time::NEVER {
+        // Beyond this the count of ticks could not be added.
+        if scaled.is_nan() || scaled.abs() >= 9.0e18 || self == Time::NEVER {
             return Time::NEVER;
         }
         let mut whole = scaled as i64;

@@ -62,28 +62,7 @@ impl<const D: usize> Cells<D> {
     /// A grid for grains at these positions; grains in cells that are not
     /// neighbours are farther apart than `reach`.
     pub(super) fn new<B: Boundary<D>>(boundary: &B, positions: &[Vector<D>], reach: f64) -> Self {
-        let mut low = [0.0; D];
-        let mut span = [0.0; D];
-        for axis in 0..D {
-            if let Some(period) = boundary.period(axis) {
-                low[axis] = period.origin;
-                span[axis] = period.length;
-            } else {
-                let along = positions.iter().map(|position| position[axis]);
-                let least = along.clone().fold(f64::INFINITY, f64::min);
-                let most = along.fold(f64::NEG_INFINITY, f64::max);
-                low[axis] = if least.is_finite() {
-                    least - 0.5 * reach
-                } else {
-                    0.0
-                };
-                span[axis] = if least.is_finite() {
-                    most - least + reach
-                } else {
-                    reach
-                };
-            }
-        }
+        let (low, span) = extents(boundary, positions, reach);
         // Not many more cells than grains, however thin the gas.
         let most_cells = 16.0 * positions.len() as f64 + 4096.0;
         let mut edge = reach * SLACK;
@@ -120,6 +99,18 @@ impl<const D: usize> Cells<D> {
             cells.add(position);
         }
         cells
+    }
+
+    /// How many of the grains at these positions there are, on average, in a
+    /// cube of this edge.
+    pub(super) fn crowding<B: Boundary<D>>(
+        boundary: &B,
+        positions: &[Vector<D>],
+        edge: f64,
+    ) -> f64 {
+        let (_, span) = extents(boundary, positions, edge);
+        let cubes: f64 = span.iter().map(|span| span / edge).product();
+        positions.len() as f64 / cubes
     }
 
     /// Seats one more grain.
@@ -216,10 +207,7 @@ impl<const D: usize> Cells<D> {
         }
         let mut at = low;
         loop {
-            let mut index = 0;
-            for axis in 0..D {
-                index += self.wrapped(at[axis], axis) * self.axes[axis].stride;
-            }
+            let index = self.index(&at);
             let mut other = self.heads[index];
             while other != NONE {
                 let seat = &self.seats[other as usize];
@@ -270,11 +258,15 @@ impl<const D: usize> Cells<D> {
         }
     }
 
-    fn index_of(&self, particle: u32) -> usize {
-        let cell = self.seats[particle as usize].cell;
+    #[inline]
+    fn index(&self, cell: &[i32; D]) -> usize {
         (0..D)
             .map(|axis| self.wrapped(cell[axis], axis) * self.axes[axis].stride)
             .sum()
+    }
+
+    fn index_of(&self, particle: u32) -> usize {
+        self.index(&self.seats[particle as usize].cell)
     }
 
     fn link(&mut self, particle: u32) {
@@ -301,4 +293,30 @@ impl<const D: usize> Cells<D> {
             self.seats[previous as usize].next = next;
         }
     }
+}
+
+/// Lower corner and lengths of a box that holds all positions, with periods for
+/// lengths where there are any.
+fn extents<B: Boundary<D>, const D: usize>(
+    boundary: &B,
+    positions: &[Vector<D>],
+    margin: f64,
+) -> ([f64; D], [f64; D]) {
+    let mut low = [0.0; D];
+    let mut span = [margin; D];
+    for axis in 0..D {
+        if let Some(period) = boundary.period(axis) {
+            low[axis] = period.origin;
+            span[axis] = period.length;
+            continue;
+        }
+        let along = positions.iter().map(|position| position[axis]);
+        let least = along.clone().fold(f64::INFINITY, f64::min);
+        let most = along.fold(f64::NEG_INFINITY, f64::max);
+        if least.is_finite() {
+            low[axis] = least - 0.5 * margin;
+            span[axis] = most - least + margin;
+        }
+    }
+    (low, span)
 }

@@ -15,16 +15,19 @@ use crate::engine::cells::{Cells, Found};
 use crate::model::Boundary;
 use crate::particle::Vector;
 
-/// Length of a leash among many neighbours and among few, over the largest
-/// diameter.
+/// Length of the shortest leash, over the largest diameter: for grains among
+/// many.
 const SHORT_LEASH: f64 = 0.2;
+/// Length of the longest, for grains with hardly a neighbour.
 const LONG_LEASH: f64 = 0.5;
-/// A list longer than this is made again with the short leash.
-const MANY: usize = 10;
-
-/// How near the surfaces of two grains may be, over the largest diameter, to
-/// be found in adjacent cells wherever they are on their leashes.
-const MARGIN: f64 = 1.1;
+/// How many neighbours a list should hold on average.
+const WANTED: f64 = 9.0;
+/// A grain whose long leash gives it more neighbours than this gets the short
+/// one.
+const MANY: usize = 16;
+/// A grain whose short leash gives it no more than this gets the long one the
+/// next time.
+const FEW: usize = 3;
 
 /// Leaves room for rounding.
 const ROUND: f64 = 1.0 - 1.0e-9;
@@ -34,6 +37,8 @@ const ROUND: f64 = 1.0 - 1.0e-9;
 struct Tie<const D: usize> {
     anchor: Vector<D>,
     leash: f64,
+    /// Whether the long leash suits it.
+    lonely: bool,
     list: Vec<Found<D>>,
 }
 
@@ -44,6 +49,8 @@ pub(super) struct Neighbours<const D: usize> {
     ties: Vec<Tie<D>>,
     /// Largest contact distance this was made for, in d.
     largest: f64,
+    /// The long leash, in d.
+    longest: f64,
     periods: [f64; D],
 }
 
@@ -51,9 +58,12 @@ impl<const D: usize> Neighbours<D> {
     /// Without lists yet, for grains at these positions whose centres touch at
     /// no more than `largest`.
     pub(super) fn new<B: Boundary<D>>(boundary: &B, positions: &[Vector<D>], largest: f64) -> Self {
-        let reach = (MARGIN + 2.0 * LONG_LEASH) * largest;
+        let long = leash_for(Cells::crowding(boundary, positions, largest), D);
+        // Everybody is found in adjacent cells.
+        let reach = (1.0 + 2.0 * long) * largest;
         Neighbours {
             cells: Cells::new(boundary, positions, reach),
+            longest: long * largest,
             ties: positions
                 .iter()
                 .map(|position| Tie::at(*position))
@@ -115,25 +125,29 @@ impl<const D: usize> Neighbours<D> {
     ) {
         self.untie_partners(particle);
         let speed = velocity.norm();
-        for length in [LONG_LEASH, SHORT_LEASH] {
-            let leash = length * self.largest;
+        loop {
+            let short = SHORT_LEASH * self.largest;
             let tie = &mut self.ties[particle as usize];
-            tie.leash = leash;
+            tie.leash = if tie.lonely { self.longest } else { short };
             // Half a unit of time ahead, but well within the leash.
             let ahead = if speed > 0.0 {
-                f64::min(0.5, 0.75 * leash / speed)
+                f64::min(0.5, 0.75 * tie.leash / speed)
             } else {
                 0.0
             };
             tie.anchor = position + velocity * ahead;
-            let anchor = tie.anchor;
+            let (anchor, leash) = (tie.anchor, tie.leash);
+            let mut list = std::mem::take(&mut tie.list);
             self.cells.refile(particle, &anchor);
-            let list = self.gather(particle, radius_of(particle) + leash, &radius_of);
-            let enough = list.len() <= MANY;
-            self.ties[particle as usize].list = list;
-            if enough {
-                break;
+            self.gather(particle, &radius_of, &mut list);
+            let tie = &mut self.ties[particle as usize];
+            tie.list = list;
+            if leash > short && tie.list.len() > MANY {
+                tie.lonely = false;
+                continue;
             }
+            tie.lonely |= tie.list.len() <= FEW;
+            break;
         }
         let list = std::mem::take(&mut self.ties[particle as usize].list);
         for other in &list {
@@ -184,36 +198,39 @@ impl<const D: usize> Neighbours<D> {
         visit: impl FnMut(Found<D>),
     ) {
         self.cells
-            .for_each_near(particle, self.rings_for(distance), visit);
+            .for_each_near(particle, self.rings_for(particle, distance), visit);
     }
 
     /// Whether looking farther than `distance`, in d, finds nobody new.
-    pub(super) fn is_everything(&self, distance: f64) -> bool {
-        self.rings_for(distance) >= self.cells.rings()
+    pub(super) fn is_everything(&self, particle: u32, distance: f64) -> bool {
+        self.rings_for(particle, distance) >= self.cells.rings()
     }
 
-    fn rings_for(&self, distance: f64) -> i32 {
-        let spread = distance + 2.0 * LONG_LEASH * self.largest;
+    fn rings_for(&self, particle: u32, distance: f64) -> i32 {
+        let spread = distance + self.ties[particle as usize].leash + self.longest;
         let rings = libm::ceil(spread / self.cells.least_edge());
         (rings.clamp(1.0, 1.0e6) as i32).min(self.cells.rings())
     }
 
-    /// Everybody whose anchor is near enough to that of `particle`.
-    fn gather(&self, particle: u32, own: f64, radius_of: &impl Fn(u32) -> f64) -> Vec<Found<D>> {
-        let anchor = self.ties[particle as usize].anchor;
-        let mut list = Vec::with_capacity(16);
-        self.cells.for_each_near(particle, 1, |found| {
+    /// Lists everybody whose anchor is near enough to that of `particle`.
+    fn gather(&self, particle: u32, radius_of: &impl Fn(u32) -> f64, list: &mut Vec<Found<D>>) {
+        list.clear();
+        let Tie { anchor, leash, .. } = self.ties[particle as usize];
+        let own = radius_of(particle) + leash;
+        let rings = self.rings_for(particle, radius_of(particle) + 0.5 * self.largest);
+        self.cells.for_each_near(particle, rings, |found| {
             let tie = &self.ties[found.particle as usize];
             let mut apart = tie.anchor - anchor;
-            for axis in 0..D {
-                apart[axis] += f64::from(found.turns[axis]) * self.periods[axis];
+            if found.turns != [0; D] {
+                for axis in 0..D {
+                    apart[axis] += f64::from(found.turns[axis]) * self.periods[axis];
+                }
             }
             let reach = own + tie.leash + radius_of(found.particle);
             if apart.norm_squared() < reach * reach {
                 list.push(found);
             }
         });
-        list
     }
 
     /// Takes a grain off the lists of all others.
@@ -221,9 +238,9 @@ impl<const D: usize> Neighbours<D> {
         let mut partners = std::mem::take(&mut self.ties[particle as usize].list);
         if self.ties[particle as usize].leash == 0.0 {
             // It was at rest: only the others know who lists it.
-            partners.clear();
+            let rings = self.rings_for(particle, self.largest);
             self.cells
-                .for_each_near(particle, 1, |found| partners.push(found));
+                .for_each_near(particle, rings, |found| partners.push(found));
         }
         for other in &partners {
             let entry = other.seen_from(particle);
@@ -232,7 +249,23 @@ impl<const D: usize> Neighbours<D> {
                 list.swap_remove(place);
             }
         }
+        // To be filled again.
+        partners.clear();
+        self.ties[particle as usize].list = partners;
     }
+}
+
+/// The leash, over the largest diameter, with which a grain has as many
+/// neighbours as wanted where there are `crowding` centres in the volume d^D.
+fn leash_for(crowding: f64, dimension: usize) -> f64 {
+    // A disk or a ball; in more dimensions good enough for this purpose.
+    let ball = if dimension == 2 {
+        std::f64::consts::PI
+    } else {
+        4.0 / 3.0 * std::f64::consts::PI
+    };
+    let radius = libm::pow(WANTED / (crowding * ball), 1.0 / dimension as f64);
+    (0.5 * (radius - 1.0)).clamp(SHORT_LEASH, LONG_LEASH)
 }
 
 impl<const D: usize> Tie<D> {
@@ -241,6 +274,7 @@ impl<const D: usize> Tie<D> {
         Tie {
             anchor: position,
             leash: 0.0,
+            lonely: true,
             list: Vec::new(),
         }
     }

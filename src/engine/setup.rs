@@ -228,7 +228,7 @@ fn validate<const D: usize>(id: ParticleId, particle: &Particle<D>) -> Result<()
         })
     };
     for &x in particle.position.iter() {
-        if !(x.abs() <= 1.0e9) {
+        if !(-1.0e9..=1.0e9).contains(&x) {
             return refuse(
                 "position",
                 x,
