@@ -234,13 +234,18 @@ fn an_earlier_run_is_kept_unless_forced() {
     assert_eq!(summary(&run), first);
 
     fs::write(run.join("notes.txt"), "mine").unwrap();
+    for stale in ["input-0.xyz", "picture.svg"] {
+        fs::write(run.join(stale), "of the run before").unwrap();
+    }
     expect(
         place.path(),
         0,
         &["run", "bounce", "--force", "--set", "output.events=false"],
     );
     assert_eq!(summary(&run)["time"], 4.0);
-    assert!(!run.join("events.csv").exists(), "left from the run before");
+    for stale in ["events.csv", "input-0.xyz", "picture.svg"] {
+        assert!(!run.join(stale).exists(), "{stale} is of the run before");
+    }
     assert_eq!(fs::read_to_string(run.join("notes.txt")).unwrap(), "mine");
 
     fs::write(place.path().join("file"), "").unwrap();
