@@ -1,0 +1,49 @@
+//! Corners of the engine: grains at rest, newcomers, narrow boxes, odd input.
+
+use grainfall::boundary::{Cuboid, Side};
+use grainfall::collide::Restitution;
+use grainfall::dynamics::{ForceFree, UniformGravity};
+use grainfall::engine::{Limits, Simulation, StopReason};
+use grainfall::model::{Dynamics, Flight, Model, Motion, Observer, Occurrence, Parts, Surroundings};
+use grainfall::policy::Never;
+use grainfall::predict::Polynomial;
+use grainfall::{Mode, Particle, Time, Vector};
+
+fn elastic<Y, const D: usize>(
+    dynamics: Y,
+    boundary: Cuboid<D>,
+) -> Parts<Y, Polynomial, Restitution, Never, Cuboid<D>> {
+    Parts {
+        dynamics,
+        predictor: Polynomial,
+        collision_rule: Restitution::elastic(),
+        state_policy: Never,
+        boundary,
+    }
+}
+
+fn contacts_up_to<M: Model<D>, const D: usize>(simulation: &mut Simulation<M, D>, time: f64) -> Vec<f64> {
+    let mut times = Vec::new();
+    simulation.run(
+        &Limits::until(Time::from_units(time)),
+        &mut |occurrence: &Occurrence<D>| times.push(occurrence.time.units()),
+    );
+    times
+}
+
+/// A normal grain at rest has to find a fixed one that comes along, whoever of
+/// the two is predicted first.
+#[test]
+fn a_moving_fixed_grain_hits_one_at_rest() {
+    let pusher = Particle::new(Vector::<3>::zeros(), Vector::<3>::new(1.0, 0.0, 0.0));
+    let grains = vec![
+        pusher.with_mode(Mode::Fixed),
+        Particle::new(Vector::<3>::new(1.05, 0.0, 0.0), Vector::<3>::zeros()),
+    ];
+    let model = elastic(ForceFree, Cuboid::open());
+    let mut simulation = Simulation::new(model, grains).unwrap();
+    let times = contacts_up_to(&mut simulation, 0.5);
+    assert_eq!(times.len(), 1);
+    assert!((times[0] - 0.05).abs() < 1.0e-12);
+    assert!(simulation.max_overlap() < 1.0e-12);
+}
