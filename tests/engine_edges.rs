@@ -47,3 +47,19 @@ fn a_moving_fixed_grain_hits_one_at_rest() {
     assert!((times[0] - 0.05).abs() < 1.0e-12);
     assert!(simulation.max_overlap() < 1.0e-12);
 }
+
+/// Those that fly already have to hear of a grain inserted at rest.
+#[test]
+fn a_static_newcomer_is_noticed() {
+    for mode in [Mode::Fixed, Mode::Frozen, Mode::Normal] {
+        let flyer = Particle::new(Vector::<3>::zeros(), Vector::<3>::new(1.0, 0.0, 0.0));
+        let model = elastic(ForceFree, Cuboid::open());
+        let mut simulation = Simulation::new(model, vec![flyer]).unwrap();
+        simulation.run(&Limits::until(Time::from_units(0.1)), &mut ());
+        let newcomer = Particle::new(Vector::<3>::new(1.2, 0.0, 0.0), Vector::<3>::zeros());
+        simulation.insert(newcomer.with_mode(mode)).unwrap();
+        let times = contacts_up_to(&mut simulation, 0.5);
+        assert_eq!(times.len(), 1, "{mode:?}");
+        assert!((times[0] - 0.2).abs() < 1.0e-12);
+    }
+}
