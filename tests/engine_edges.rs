@@ -63,3 +63,50 @@ fn a_static_newcomer_is_noticed() {
         assert!((times[0] - 0.2).abs() < 1.0e-12);
     }
 }
+
+/// A fixed grain with a prescribed path is not at rest because its stored
+/// velocity is zero.
+#[test]
+fn a_prescribed_path_is_followed() {
+    #[derive(Clone, Copy)]
+    struct Lift;
+    impl Dynamics<2> for Lift {
+        type Flight = grainfall::dynamics::Straight<2>;
+
+        fn flight(&self, motion: &Motion<2>, since: Time) -> Self::Flight {
+            let mut velocity = motion.velocity;
+            if motion.mode == Mode::Fixed {
+                velocity.y = 3.0;
+            }
+            ForceFree.flight(&Motion { velocity, ..*motion }, since)
+        }
+
+        fn gravity(&self, _time: Time) -> Vector<2> {
+            Vector::<2>::zeros()
+        }
+    }
+    // The second flies towards a third that is near; meanwhile the first, which
+    // seems far and at rest, comes up from below.
+    let at = |x: f64, y: f64, speed: f64| {
+        Particle::new(Vector::<2>::new(x, y), Vector::<2>::new(speed, 0.0))
+    };
+    let grains = vec![
+        at(0.0, -1.35, 0.0).with_mode(Mode::Fixed),
+        at(0.0, 0.0, 0.1),
+        at(1.02, 0.0, 0.0),
+    ];
+    let mut simulation = Simulation::new(elastic(Lift, Cuboid::open()), grains).unwrap();
+    let times = contacts_up_to(&mut simulation, 0.15);
+    assert_eq!(times.len(), 1);
+    assert!((times[0] - 0.1167).abs() < 1.0e-3, "{times:?}");
+    assert!(Lift.flight(
+        &Motion {
+            id: grainfall::ParticleId(0),
+            position: Vector::<2>::zeros(),
+            velocity: Vector::<2>::zeros(),
+            mode: Mode::Normal,
+        },
+        Time::ZERO
+    )
+    .is_at_rest());
+}
