@@ -110,3 +110,29 @@ fn a_prescribed_path_is_followed() {
     )
     .is_at_rest());
 }
+
+/// In a narrow box every neighbour is shown once, in its nearest image.
+#[test]
+fn a_neighbour_is_shown_once() {
+    struct Count(Vec<usize>);
+    impl Observer<2> for Count {
+        fn observe<S: Surroundings<2>>(&mut self, occurrence: &Occurrence<2>, after: &S) {
+            let mut seen = 0;
+            after.for_each_neighbour(occurrence.particle, 1.3, |neighbour| {
+                seen += 1;
+                assert!(neighbour.offset.norm() <= 1.3);
+            });
+            self.0.push(seen);
+        }
+    }
+    let side = Side::periodic(2.2);
+    let grains = vec![
+        Particle::new(Vector::<2>::new(0.1, 0.1), Vector::<2>::new(1.0, 0.1)),
+        Particle::new(Vector::<2>::new(1.2, 0.2), Vector::<2>::zeros()),
+    ];
+    let boundary = Cuboid::new([side, side]).unwrap();
+    let mut simulation = Simulation::new(elastic(ForceFree, boundary), grains).unwrap();
+    let mut count = Count(Vec::new());
+    assert_eq!(simulation.run(&Limits::events(20), &mut count), StopReason::Events);
+    assert_eq!(count.0, vec![1; 20]);
+}

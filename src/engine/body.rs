@@ -88,6 +88,28 @@ impl<const D: usize> World<D> {
         }
     }
 
+    /// From one grain to the image of another that is `turns` periods away, if
+    /// that is the nearest; in narrow boxes a search finds several images.
+    pub(super) fn nearest<M: Model<D>>(
+        &self,
+        model: &M,
+        from: &Particle<D>,
+        to: &Particle<D>,
+        turns: [i32; D],
+    ) -> Option<Vector<D>> {
+        let mut apart = to.position - from.position;
+        for axis in 0..D {
+            if let Some(period) = model.boundary().period(axis) {
+                let nearest = -libm::rint(apart[axis] / period.length);
+                if nearest != f64::from(turns[axis]) {
+                    return None;
+                }
+                apart[axis] += nearest * period.length;
+            }
+        }
+        Some(apart)
+    }
+
     /// From one grain to the nearest image of another, now.
     pub(super) fn displacement<M: Model<D>>(
         &self,

@@ -137,7 +137,10 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
                 if other.mode == Mode::Falling {
                     return;
                 }
-                let apart = self.world.displacement(&self.model, &other, &one);
+                let towards = self.world.nearest(&self.model, &one, &other, found.turns);
+                let Some(apart) = towards.map(|towards| -towards) else {
+                    return;
+                };
                 let contact = 0.5 * (one.diameter + other.diameter);
                 if apart.norm_squared() - contact * contact < TOUCHING {
                     touched.push((found.particle, apart.normalize(), other));
