@@ -136,3 +136,25 @@ fn a_neighbour_is_shown_once() {
     assert_eq!(simulation.run(&Limits::events(20), &mut count), StopReason::Events);
     assert_eq!(count.0, vec![1; 20]);
 }
+
+/// The clock never goes back, not even for a new grid that was due while no
+/// event was.
+#[test]
+fn a_late_grid_does_not_turn_the_clock_back() {
+    let grains = vec![
+        Particle::new(Vector::<2>::new(0.0, 0.0), Vector::<2>::zeros()),
+        Particle::new(Vector::<2>::new(3.0, 0.0), Vector::<2>::zeros()),
+    ];
+    let dynamics = grainfall::dynamics::Growing::new(ForceFree, 1.0);
+    let mut simulation = Simulation::new(elastic(dynamics, Cuboid::open()), grains).unwrap();
+    simulation.run(&Limits::until(Time::from_units(1.0)), &mut ());
+    let mut last = Time::from_units(1.0);
+    for _ in 0..3 {
+        simulation.run(&Limits::events(1), &mut |occurrence: &Occurrence<2>| {
+            assert!(occurrence.time >= last);
+            last = occurrence.time;
+        });
+        assert!(simulation.time() >= last);
+    }
+    assert!((last.units() - 2.0).abs() < 1.0e-12);
+}

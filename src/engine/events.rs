@@ -38,7 +38,8 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
                 return StopReason::Time;
             }
             if key.time > self.regrid_at {
-                self.world.clock = self.regrid_at;
+                // A stop may lie between that instant and the next event.
+                self.world.clock = self.world.clock.max(self.regrid_at);
                 self.rebuild_grid();
                 continue;
             }
