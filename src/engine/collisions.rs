@@ -279,7 +279,8 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
         if least == 0.0 {
             return;
         }
-        let leaving = (rebound.velocity - impact.obstacle_velocity()).dot(&impact.normal);
+        let apart = rebound.velocity - impact.obstacle_velocity();
+        let leaving = apart.dot(&impact.normal) - impact.growth;
         if leaving < least {
             rebound.velocity += impact.normal * (least - leaving);
             self.counts.guard += 1;

@@ -182,10 +182,11 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
         }
         let mut speed = flight.speed_bound(within);
         let mut apart = -flight.position(0.0);
-        if far.mode.is_static() && far.velocity == Vector::<D>::zeros() {
-            apart += far.position;
+        let far_flight = self.world.flight(&self.model, other.particle);
+        // Not by its velocity: a fixed grain's path may be prescribed.
+        if far_flight.is_at_rest() {
+            apart += far_flight.position(0.0);
         } else {
-            let far_flight = self.world.flight(&self.model, other.particle);
             apart += far_flight.position(since_far);
             speed += far_flight.speed_bound(since_far + within);
         }

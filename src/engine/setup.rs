@@ -137,10 +137,13 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
             self.forget_last();
             return Err(error);
         }
-        self.tie_if_moving(index);
+        // Even if it is at rest, for a moment: that puts it on the lists of
+        // those that move.
+        self.tie(index);
         self.note_speed(index);
         self.tell_started(index);
         self.predict(index);
+        self.release_if_static(index);
         Ok(id)
     }
 

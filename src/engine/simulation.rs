@@ -160,10 +160,13 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
         }
     }
 
-    /// Sees to it that a grain has a neighbour list if it moves.
+    /// Sees to it that a grain has a neighbour list if it moves or may be set
+    /// in motion by a hit: the list of a mobile grain at rest, too, is needed
+    /// to find who comes along.
     pub(super) fn tie_if_moving(&mut self, particle: u32) {
         if !self.world.near.is_tied(particle)
-            && !self.world.flight(&self.model, particle).is_at_rest()
+            && (self.world.bodies[particle as usize].mode.is_mobile()
+                || !self.world.flight(&self.model, particle).is_at_rest())
         {
             self.tie(particle);
         }

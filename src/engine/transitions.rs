@@ -91,8 +91,14 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
             observer,
         );
         self.predict(particle);
-        if self.world.flight(&self.model, particle).is_at_rest() {
-            let position = self.world.bodies[particle as usize].position;
+        self.release_if_static(particle);
+    }
+
+    /// A static grain at rest needs no neighbour list of its own.
+    pub(super) fn release_if_static(&mut self, particle: u32) {
+        let body = &self.world.bodies[particle as usize];
+        if body.mode.is_static() && self.world.flight(&self.model, particle).is_at_rest() {
+            let position = body.position;
             self.world.near.release(particle, &position);
         }
     }
