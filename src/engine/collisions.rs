@@ -94,13 +94,15 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
             sleep_other = self.ask_sleep(&mirrored, rebound.other_velocity, b);
         }
 
-        let run = self.traces.collided(a, Partner::Particle(b), now);
+        let run = self
+            .traces
+            .collided(a, Partner::Particle(b), !two_mobile, now);
         let held = (struck_static && !two_mobile && rebound.elastic).then_some(b);
         self.traces.hold(a, held, now);
         self.settle(a, one.position, rebound.velocity);
         let mut run_other = 0;
         if two_mobile {
-            run_other = self.traces.collided(b, Partner::Particle(a), now);
+            run_other = self.traces.collided(b, Partner::Particle(a), false, now);
             self.traces.hold(b, None, now);
             self.settle(b, stored_position, rebound.other_velocity);
         }
@@ -178,7 +180,9 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
         self.lift(&impact, &mut rebound);
         let sleep = self.ask_sleep(&impact, rebound.velocity, particle);
 
-        let run = self.traces.collided(particle, Partner::Wall(wall), now);
+        let run = self
+            .traces
+            .collided(particle, Partner::Wall(wall), true, now);
         self.traces.hold(particle, None, now);
         self.settle(particle, one.position, rebound.velocity);
         let relief = self.end_cascade(particle, run);

@@ -416,7 +416,15 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
         // Within a time t it goes no farther than its top speed then times t.
         let safe = |window: f64| f64::min(window, slack / flight.speed_bound(window));
         let mut certain = safe(1.0);
-        certain = certain.max(safe(2.0 * certain));
+        // A slow grain needs looking after no more often than a fast one needs
+        // in the time it takes to go as far.
+        loop {
+            let longer = safe(2.0 * certain);
+            if longer <= certain {
+                break;
+            }
+            certain = longer;
+        }
         slot.renewal = self.world.clock + certain;
     }
 }
