@@ -4,7 +4,9 @@ use grainfall::boundary::{Cuboid, Side};
 use grainfall::collide::Restitution;
 use grainfall::dynamics::ForceFree;
 use grainfall::engine::{Limits, Simulation, StopReason};
-use grainfall::model::{Dynamics, Flight, Model, Motion, Observer, Occurrence, Parts, Surroundings};
+use grainfall::model::{
+    Dynamics, Flight, Model, Motion, Observer, Occurrence, Parts, Surroundings,
+};
 use grainfall::policy::Never;
 use grainfall::predict::Polynomial;
 use grainfall::{Mode, Particle, Time, Vector};
@@ -22,7 +24,10 @@ fn elastic<Y, const D: usize>(
     }
 }
 
-fn contacts_up_to<M: Model<D>, const D: usize>(simulation: &mut Simulation<M, D>, time: f64) -> Vec<f64> {
+fn contacts_up_to<M: Model<D>, const D: usize>(
+    simulation: &mut Simulation<M, D>,
+    time: f64,
+) -> Vec<f64> {
     let mut times = Vec::new();
     simulation.run(
         &Limits::until(Time::from_units(time)),
@@ -78,7 +83,13 @@ fn a_prescribed_path_is_followed() {
             if motion.mode == Mode::Fixed {
                 velocity.y = 3.0;
             }
-            ForceFree.flight(&Motion { velocity, ..*motion }, since)
+            ForceFree.flight(
+                &Motion {
+                    velocity,
+                    ..*motion
+                },
+                since,
+            )
         }
 
         fn gravity(&self, _time: Time) -> Vector<2> {
@@ -99,16 +110,18 @@ fn a_prescribed_path_is_followed() {
     let times = contacts_up_to(&mut simulation, 0.15);
     assert_eq!(times.len(), 1);
     assert!((times[0] - 0.1167).abs() < 1.0e-3, "{times:?}");
-    assert!(Lift.flight(
-        &Motion {
-            id: grainfall::ParticleId(0),
-            position: Vector::<2>::zeros(),
-            velocity: Vector::<2>::zeros(),
-            mode: Mode::Normal,
-        },
-        Time::ZERO
-    )
-    .is_at_rest());
+    assert!(
+        Lift.flight(
+            &Motion {
+                id: grainfall::ParticleId(0),
+                position: Vector::<2>::zeros(),
+                velocity: Vector::<2>::zeros(),
+                mode: Mode::Normal,
+            },
+            Time::ZERO
+        )
+        .is_at_rest()
+    );
 }
 
 /// In a narrow box every neighbour is shown once, in its nearest image.
@@ -133,7 +146,10 @@ fn a_neighbour_is_shown_once() {
     let boundary = Cuboid::new([side, side]).unwrap();
     let mut simulation = Simulation::new(elastic(ForceFree, boundary), grains).unwrap();
     let mut count = Count(Vec::new());
-    assert_eq!(simulation.run(&Limits::events(20), &mut count), StopReason::Events);
+    assert_eq!(
+        simulation.run(&Limits::events(20), &mut count),
+        StopReason::Events
+    );
     assert_eq!(count.0, vec![1; 20]);
 }
 
