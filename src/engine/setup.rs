@@ -7,11 +7,11 @@ use crate::engine::counts::{Counts, ModeCounts};
 use crate::engine::guards::Traces;
 use crate::engine::neighbours::Neighbours;
 use crate::engine::queue::EventQueue;
-use crate::engine::search::Slot;
 use crate::engine::settings::Settings;
 use crate::engine::simulation::Simulation;
+use crate::engine::slot::Slot;
 use crate::error::SetupError;
-use crate::model::{Boundary, Commands, MemoryOf, Model, SpinOf, Wall};
+use crate::model::{Boundary, Commands, Flight, MemoryOf, Model, SpinOf, Wall};
 use crate::particle::{Mode, Particle, ParticleId, WallId};
 use crate::time::Time;
 
@@ -156,8 +156,12 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
             since: self.world.clock,
             radius: 0.5 * particle.diameter / scale,
             mode: particle.mode,
+            still: false,
             stamp: 0,
         });
+        let index = self.world.bodies.len() as u32 - 1;
+        let at_rest = self.world.flight(&self.model, index).is_at_rest();
+        self.world.bodies[index as usize].still = particle.mode.is_static() && at_rest;
         self.world.masses.push(particle.mass);
         *self.world.modes.of(particle.mode) += 1;
         self.traces.add();
