@@ -2,7 +2,7 @@
 
 use grainfall::boundary::{Cuboid, Side};
 use grainfall::collide::Restitution;
-use grainfall::dynamics::{ForceFree, UniformGravity};
+use grainfall::dynamics::ForceFree;
 use grainfall::engine::{Limits, Simulation, StopReason};
 use grainfall::model::{Dynamics, Flight, Model, Motion, Observer, Occurrence, Parts, Surroundings};
 use grainfall::policy::Never;
@@ -137,10 +137,10 @@ fn a_neighbour_is_shown_once() {
     assert_eq!(count.0, vec![1; 20]);
 }
 
-/// The clock never goes back, not even for a new grid that was due while no
-/// event was.
+/// Grains that grow towards each other at rest meet although nothing happens
+/// before, and the clock never goes back for a new grid.
 #[test]
-fn a_late_grid_does_not_turn_the_clock_back() {
+fn grains_at_rest_grow_until_they_touch() {
     let grains = vec![
         Particle::new(Vector::<2>::new(0.0, 0.0), Vector::<2>::zeros()),
         Particle::new(Vector::<2>::new(3.0, 0.0), Vector::<2>::zeros()),
