@@ -4,7 +4,9 @@ use grainfall::boundary::{Cuboid, Side};
 use grainfall::collide::Restitution;
 use grainfall::dynamics::ForceFree;
 use grainfall::engine::{Limits, Simulation, StopReason};
-use grainfall::model::{Dynamics, Flight, Model, Motion, Observer, Occurrence, Parts, Surroundings};
+use grainfall::model::{
+    Dynamics, Flight, Model, Motion, Observer, Occurrence, Parts, Surroundings,
+};
 use grainfall::policy::Never;
 use grainfall::predict::Polynomial;
 use grainfall::{Mode, Particle, Time, Vector};
@@ -22,7 +24,10 @@ fn elastic<Y, const D: usize>(
     }
 }
 
-fn contacts_up_to<M: Model<D>, const D: usize>(simulation: &mut Simulation<M, D>, time: f64) -> Vec<f64> {
+fn contacts_up_to<M: Model<D>, const D: usize>(
+    simulation: &mut Simulation<M, D>,
+    time: f64,
+) -> Vec<f64> {
     let mut times = Vec::new();
     simulation.run(
         &Limits::until(Time::from_units(time)),
@@ -78,7 +83,13 @@ fn a_prescribed_path_is_followed() {
             if motion.mode == Mode::Fixed {
                 velocity.y = 3.0;
             }
-            ForceFree.flight(&Motion { velocity, ..*motion }, since)
+            ForceFree.flight(
+                &Motion {
+                    velocity,
+                    ..*motion
+                },
+                since,
+            )
         }
 
         fn gravity(&self, _time: Time) -> Vector<2> {
@@ -99,16 +110,18 @@ fn a_prescribed_path_is_followed() {
     let times = contacts_up_to(&mut simulation, 0.15);
     assert_eq!(times.len(), 1);
     assert!((times[0] - 0.1167).abs() < 1.0e-3, "{times:?}");
-    assert!(Lift.flight(
-        &Motion {
-            id: grainfall::ParticleId(0),
-            position: Vector::<2>::zeros(),
-            velocity: Vector::<2>::zeros(),
-            mode: Mode::Normal,
-        },
-        Time::ZERO
-    )
-    .is_at_rest());
+    assert!(
+        Lift.flight(
+            &Motion {
+                id: grainfall::ParticleId(0),
+                position: Vector::<2>::zeros(),
+                velocity: Vector::<2>::zeros(),
+                mode: Mode::Normal,
+            },
+            Time::ZERO
+        )
+        .is_at_rest()
+    );
 }
 
 /// In a narrow box every neighbour is shown once, in its nearest image.
@@ -133,7 +146,10 @@ fn a_neighbour_is_shown_once() {
     let boundary = Cuboid::new([side, side]).unwrap();
     let mut simulation = Simulation::new(elastic(ForceFree, boundary), grains).unwrap();
     let mut count = Count(Vec::new());
-    assert_eq!(simulation.run(&Limits::events(20), &mut count), StopReason::Events);
+    assert_eq!(
+        simulation.run(&Limits::events(20), &mut count),
+        StopReason::Events
+    );
     assert_eq!(count.0, vec![1; 20]);
 }
 
@@ -157,4 +173,97 @@ fn grains_at_rest_grow_until_they_touch() {
         assert!(simulation.time() >= last);
     }
     assert!((last.units() - 2.0).abs() < 1.0e-12);
+}
+
+type Grains = Vec<Particle<3>>;
+
+fn is_refused<M: Model<3>>(model: M, grains: Grains) -> bool {
+    Simulation::new(model, grains).is_err()
+}
+
+/// Numbers with which nothing sensible, or nothing at all, would come of a run.
+#[test]
+fn odd_numbers_are_refused() {
+    use grainfall::dynamics::{Growing, UniformGravity};
+    use grainfall::policy::{SelfCheck, SlowDescent};
+    let open = Cuboid::<3>::open;
+    let grain = || Particle::new(Vector::<3>::zeros(), Vector::<3>::zeros());
+    for odd in [f64::NAN, f64::INFINITY, -1.0, 1.0e300, 1.0e-300] {
+        assert!(is_refused(
+            elastic(ForceFree, open()),
+            vec![grain().with_diameter(odd)]
+        ));
+        assert!(is_refused(
+            elastic(ForceFree, open()),
+            vec![grain().with_mass(odd)]
+        ));
+    }
+    for odd in [f64::NAN, f64::INFINITY, 1.0e30] {
+        let mut fast = grain();
+        fast.velocity.x = odd;
+        assert!(is_refused(elastic(ForceFree, open()), vec![fast]));
+        let gravity = UniformGravity::new(Vector::<3>::new(odd, 0.0, 0.0));
+        assert!(is_refused(elastic(gravity, open()), vec![grain()]));
+    }
+    for odd in [f64::NAN, -1.0] {
+        assert!(is_refused(
+            elastic(Growing::new(ForceFree, odd), open()),
+            vec![grain()]
+        ));
+        for policy in [
+            SlowDescent {
+                sleep_speed: odd,
+                ..SlowDescent::default()
+            },
+            SlowDescent {
+                wake_speed: odd,
+                ..SlowDescent::default()
+            },
+            SlowDescent {
+                frozen_restitution: odd,
+                ..SlowDescent::default()
+            },
+            SlowDescent {
+                store_time: Some(odd),
+                ..SlowDescent::default()
+            },
+        ] {
+            assert!(is_refused(
+                elastic(ForceFree, open()).with_policy(policy),
+                vec![grain()]
+            ));
+        }
+        let rule = Restitution {
+            restitution: odd,
+            ..Restitution::default()
+        };
+        assert!(is_refused(
+            elastic(ForceFree, open()).with_collision_rule(rule),
+            vec![grain()]
+        ));
+    }
+    for interval in [0.0, -1.0, f64::NAN, 1.0e-30, f64::INFINITY] {
+        let check = SelfCheck {
+            interval,
+            ..SelfCheck::default()
+        };
+        let policy = SlowDescent {
+            self_check: Some(check),
+            ..SlowDescent::default()
+        };
+        assert!(is_refused(
+            elastic(ForceFree, open()).with_policy(policy),
+            vec![grain()]
+        ));
+    }
+}
+
+#[test]
+fn a_box_may_be_empty() {
+    let boundary = Cuboid::new([Side::periodic(4.0); 3]).unwrap();
+    let mut simulation = Simulation::new(elastic(ForceFree, boundary), Vec::new()).unwrap();
+    assert_eq!(
+        simulation.run(&Limits::default(), &mut ()),
+        StopReason::NothingLeft
+    );
 }
