@@ -268,6 +268,8 @@ impl<const D: usize> StatePolicy<D> for SlowDescent {
         };
         let on_support = self.is_on_support(impact);
         let previous = memory.previous_speed;
+        // A decision that this collision has cancelled.
+        memory.deciding = None;
         if on_support || self.comparison == Comparison::AnyCollision {
             memory.previous_speed = Some(speed);
         }

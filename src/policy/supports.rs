@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::error::SetupError;
 use crate::model::{Reason, Surroundings};
-use crate::particle::ParticleId;
+use crate::particle::{Mode, ParticleId};
 use crate::time::Time;
 
 /// A wall within this gap below a grain supports it, in d.
@@ -162,7 +162,7 @@ impl Supports {
                 if lower > 0.0 {
                     below.push(other.id);
                 }
-            } else if check.support_normals && lower < 0.0 {
+            } else if check.support_normals && other.mode == Mode::Normal && lower < 0.0 {
                 above.push(other.id);
             }
         });
