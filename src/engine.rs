@@ -3,6 +3,8 @@
 //! It knows a model by [`Model`](crate::model::Model) alone and no
 //! implementation of its parts.
 
+#[cfg(test)]
+mod audit;
 mod body;
 mod cascade;
 mod cells;
