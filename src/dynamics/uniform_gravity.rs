@@ -43,7 +43,7 @@ impl<const D: usize> Dynamics<D> for UniformGravity<D> {
     }
 
     fn validate(&self) -> Result<(), SetupError> {
-        match self.gravity.iter().find(|g| !(g.abs() <= 1.0e9)) {
+        match self.gravity.iter().find(|g| g.is_nan() || g.abs() > 1.0e9) {
             None => Ok(()),
             Some(&value) => Err(SetupError::Parameter {
                 field: "gravity",

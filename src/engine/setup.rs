@@ -73,7 +73,7 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
             largest = largest.max(particle.diameter);
         }
         let scale = scale_at::<M, D>(&model, settings.start);
-        if !(scale > 0.0) {
+        if scale.is_nan() || scale <= 0.0 {
             return Err(SetupError::Parameter {
                 field: "start",
                 value: settings.start.units(),
@@ -250,7 +250,7 @@ fn validate<const D: usize>(id: ParticleId, particle: &Particle<D>) -> Result<()
         })
     };
     for &x in particle.position.iter() {
-        if !(x.abs() <= 1.0e9) {
+        if x.is_nan() || x.abs() > 1.0e9 {
             return refuse(
                 "position",
                 x,
@@ -260,7 +260,7 @@ fn validate<const D: usize>(id: ParticleId, particle: &Particle<D>) -> Result<()
     }
     for &v in particle.velocity.iter() {
         // Faster ones would leave their neighbours in no representable time.
-        if !(v.abs() <= 1.0e9) {
+        if v.is_nan() || v.abs() > 1.0e9 {
             return refuse("velocity", v, "components between -1e9 and 1e9 are allowed");
         }
     }

@@ -235,7 +235,7 @@ impl<const D: usize> StatePolicy<D> for SlowDescent {
         ];
         for (field, value) in positive {
             // NaN is refused, infinity is not.
-            if !(value >= 0.0) {
+            if value.is_nan() || value < 0.0 {
                 return Err(SetupError::Parameter {
                     field,
                     value,
