@@ -141,6 +141,10 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
     pub(super) fn lay_grid(&mut self) {
         let now = self.world.clock;
         let mut largest = self.world.largest * scale_at::<M, D>(&self.model, now);
+        if self.world.bodies.is_empty() {
+            // No grain, no length: any will do.
+            largest = 1.0;
+        }
         self.regrid_at = Time::NEVER;
         if M::Dynamics::GROWS {
             // Room to grow, so that this is rarely done.
