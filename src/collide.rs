@@ -85,6 +85,10 @@ impl Restitution {
 impl<const D: usize> CollisionRule<D> for Restitution {
     type Spin = ();
 
+    fn validate(&self) -> Result<(), SetupError> {
+        self.validated().map(drop)
+    }
+
     #[inline]
     fn collide(&self, impact: &Impact<D>, _spins: Spins<'_, ()>) -> Rebound<D> {
         let closing = impact.closing_speed();
@@ -99,7 +103,10 @@ impl<const D: usize> CollisionRule<D> for Restitution {
         };
         let elastic = cut_off && closing < self.elastic_speed;
         let restitution = if elastic { 1.0 } else { restitution };
-        let change = impact.normal * ((1.0 + restitution) * closing);
+        // The normal is of unit length to within rounding, which is a hair more
+        // on average: left so, an elastic gas would heat up.
+        let unit = impact.normal.norm_squared();
+        let change = impact.normal * ((1.0 + restitution) * closing / unit);
         // The other grain's share of the change of relative velocity.
         let share = if other_mass.is_finite() {
             impact.particle.mass / (impact.particle.mass + other_mass)

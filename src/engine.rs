@@ -3,12 +3,15 @@
 //! It knows a model by [`Model`](crate::model::Model) alone and no
 //! implementation of its parts.
 
+#[cfg(test)]
+mod audit;
 mod body;
 mod cascade;
 mod cells;
 mod collisions;
 mod counts;
 mod events;
+mod foresight;
 mod guards;
 mod neighbours;
 mod projection;
@@ -17,6 +20,7 @@ mod search;
 mod settings;
 mod setup;
 mod simulation;
+mod slot;
 mod transitions;
 mod view;
 

@@ -403,3 +403,29 @@ boundaries = [{ periodic = { length = 1e8 } }, { periodic = { length = 1e8 } }, 
         assert_refused("bad.toml", &format!("{boxed}{source}\n"), &[wanted]);
     }
 }
+
+/// Very many grains in the reach of one, or at one place.
+#[test]
+fn crowds_are_refused_quickly() {
+    let place = tempfile::tempdir().unwrap();
+    let scenario = "dimension = 3\n[[grains]]\nfile = \"g.xyz\"\n";
+    std::fs::write(place.path().join("bad.toml"), scenario).unwrap();
+    let head = "Properties=pos:R:3:radius:R:1";
+    let spread: String = (0..50_000)
+        .map(|k| format!("{} {} {} 0.5\n", k % 37, k / 37 % 37, k / 1369))
+        .collect();
+    let piled = "0 0 0 0.5\n".repeat(50_000);
+    for grains in [
+        format!("50001\n{head}\n{spread}18 18 -1000 999\n"),
+        format!("50000\n{head}\n{piled}"),
+    ] {
+        std::fs::write(place.path().join("g.xyz"), grains).unwrap();
+        let output = grainfall(place.path(), &["check", "bad.toml"]);
+        assert_eq!(output.status.code(), Some(2));
+        let said = message(&output);
+        assert!(
+            said.contains("bad.toml:2:1") && said.contains("pairs"),
+            "{said}"
+        );
+    }
+}

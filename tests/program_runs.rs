@@ -234,13 +234,18 @@ fn an_earlier_run_is_kept_unless_forced() {
     assert_eq!(summary(&run), first);
 
     fs::write(run.join("notes.txt"), "mine").unwrap();
+    for stale in ["input-0.xyz", "picture.svg"] {
+        fs::write(run.join(stale), "of the run before").unwrap();
+    }
     expect(
         place.path(),
         0,
         &["run", "bounce", "--force", "--set", "output.events=false"],
     );
     assert_eq!(summary(&run)["time"], 4.0);
-    assert!(!run.join("events.csv").exists(), "left from the run before");
+    for stale in ["events.csv", "input-0.xyz", "picture.svg"] {
+        assert!(!run.join(stale).exists(), "{stale} is of the run before");
+    }
     assert_eq!(fs::read_to_string(run.join("notes.txt")).unwrap(), "mine");
 
     fs::write(place.path().join("file"), "").unwrap();
@@ -507,7 +512,7 @@ fn signals_end_a_run_in_good_order() {
                 "--set",
                 "grains.0.gas.count=50",
                 "--until",
-                "1e9",
+                "1e7",
             ])
             .args(["--set", "output.series_every=1"])
             .stdout(Stdio::null())
@@ -519,10 +524,11 @@ fn signals_end_a_run_in_good_order() {
         let series = place.path().join("runs/gas-1/series.csv");
         let patience = Instant::now();
         while fs::metadata(&series).map_or(0, |about| about.len()) == 0 {
-            assert!(
-                patience.elapsed() < Duration::from_secs(300),
-                "it never started"
-            );
+            assert_eq!(running.try_wait().unwrap(), None, "it ended by itself");
+            if patience.elapsed() > Duration::from_secs(300) {
+                running.kill().unwrap();
+                panic!("it never started");
+            }
             std::thread::sleep(Duration::from_millis(10));
         }
         let pid = running.id().to_string();

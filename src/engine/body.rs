@@ -1,5 +1,6 @@
 //! What the engine stores of grains, and where they are now.
 
+use crate::engine::cells::Found;
 use crate::engine::counts::ModeCounts;
 use crate::engine::neighbours::Neighbours;
 use crate::model::{Boundary, Dynamics, Flight, FlightOf, Model, Motion};
@@ -16,6 +17,8 @@ pub(super) struct Body<const D: usize> {
     /// Radius at t = 0, in d.
     pub(super) radius: f64,
     pub(super) mode: Mode,
+    /// Static and not moving along.
+    pub(super) still: bool,
     /// Counts the changes of this state, so that events foreseen before the
     /// last one can be told.
     pub(super) stamp: u32,
@@ -75,6 +78,7 @@ impl<const D: usize> World<D> {
             *self.modes.of(mode) += 1;
             body.mode = mode;
         }
+        body.still = mode.is_static() && flight_of(model, particle, body).is_at_rest();
         for axis in 0..D {
             let Some(period) = model.boundary().period(axis) else {
                 continue;
@@ -86,6 +90,27 @@ impl<const D: usize> World<D> {
                 self.near.unwind(particle, axis, turns as i32);
             }
         }
+    }
+
+    /// A grain that was found next to `one`, now, and the vector to it from
+    /// there; `None` if it was found in an image that is not the nearest, so
+    /// that in narrow boxes nobody is met twice.
+    pub(super) fn nearest<M: Model<D>>(
+        &self,
+        model: &M,
+        one: &Particle<D>,
+        found: &Found<D>,
+    ) -> Option<(Particle<D>, Vector<D>)> {
+        let other = self.particle_now(model, found.particle);
+        let offset = self.displacement(model, one, &other);
+        let mut image = other.position - one.position - offset;
+        for axis in 0..D {
+            if let Some(period) = model.boundary().period(axis) {
+                image[axis] += f64::from(found.turns[axis]) * period.length;
+            }
+        }
+        // Another image is a whole period away, this one a rounding.
+        (image.norm() < 0.1 * self.largest).then_some((other, offset))
     }
 
     /// From one grain to the nearest image of another, now.

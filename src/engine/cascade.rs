@@ -1,15 +1,23 @@
 //! The cascade guard and the collapse detector.
 
 use crate::engine::projection::{Member, Touch, project};
-use crate::engine::search::Partner;
 use crate::engine::settings::Collapse;
 use crate::engine::simulation::Simulation;
+use crate::engine::slot::Partner;
 use crate::model::{Boundary, Dynamics, Model, Wall};
-use crate::particle::{Mode, ParticleId, Vector};
+use crate::particle::{Mode, Particle, ParticleId, Vector};
 
 /// Difference of squared distances up to which two surfaces count as touching,
 /// in d².
 const TOUCHING: f64 = 1.0e-11;
+
+/// After each this many collisions with nothing but static obstacles, a grain
+/// is looked at: it may be caught in a cage.
+const CONFINED: u32 = 4096;
+
+/// Difference of squared distances, in d², up to which the bars of a cage may be
+/// away: the grain in it cannot move farther than about that.
+const CAGE: f64 = 1.0e-8;
 
 /// A cluster of grains that touch is not followed beyond this many.
 const MOST_MEMBERS: usize = 12;
@@ -38,6 +46,17 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
         let guards = self.settings.guards;
         if guards.collapse.is_some_and(|limit| run >= limit) && self.collapse.is_none() {
             self.collapse = Some(self.name_collapse(particle, run));
+        }
+        let confined = self.traces[particle as usize].confined;
+        if guards.cascade.is_some() && confined > 0 && confined.is_multiple_of(CONFINED) {
+            let caught = self.is_caged(particle);
+            self.counts.guard += u64::from(caught);
+            if caught {
+                return Relief {
+                    caught,
+                    disturbed: Vec::new(),
+                };
+            }
         }
         let due = |limit: u32| run >= limit && run.is_multiple_of(limit);
         if !guards.cascade.is_some_and(due) {
@@ -93,6 +112,16 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
         Relief { caught, disturbed }
     }
 
+    /// Whether static obstacles all but touch a grain on so many sides that no
+    /// velocity leads away from all of them.
+    fn is_caged(&self, particle: u32) -> bool {
+        let velocity = self.world.particle_now(&self.model, particle).velocity;
+        let mut bars = Vec::new();
+        self.for_each_static(particle, CAGE, |touch, _| bars.push(touch));
+        let exit = self.settings.guards.exit_speed;
+        exit > 0.0 && project(&[velocity], &bars, exit).is_none()
+    }
+
     fn name_collapse(&self, particle: u32, run: u32) -> Collapse {
         let cluster = self.cluster(particle);
         let mut particles: Vec<ParticleId> = cluster
@@ -116,7 +145,6 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
     /// The normal grains that touch `particle` now, directly or through each
     /// other, it first, and whatever any of them touches.
     fn cluster(&self, particle: u32) -> Cluster<D> {
-        let now = self.world.clock;
         let mut cluster = Cluster {
             members: vec![particle],
             touches: Vec::new(),
@@ -125,82 +153,131 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
         let mut place = 0;
         while place < cluster.members.len() {
             let member = cluster.members[place];
-            let one = self.world.particle_now(&self.model, member);
-            let here = Member {
-                place,
-                mass: one.mass,
-            };
-            let farthest = one.radius() + 0.5 * self.world.largest * self.scale_at(now) + TOUCHING;
-            let mut touched = Vec::new();
-            self.world.near.for_each_within(member, farthest, |found| {
-                let other = self.world.particle_now(&self.model, found.particle);
-                if other.mode == Mode::Falling {
-                    return;
-                }
-                let apart = self.world.displacement(&self.model, &other, &one);
-                let contact = 0.5 * (one.diameter + other.diameter);
-                if apart.norm_squared() - contact * contact < TOUCHING {
-                    touched.push((found.particle, apart.normalize(), other));
+            let Cluster {
+                members,
+                touches,
+                statics,
+            } = &mut cluster;
+            self.for_each_static(member, TOUCHING, |mut touch, id| {
+                touch.one.place = place;
+                touches.push(touch);
+                if let Some(id) = id
+                    && !statics.contains(&id)
+                {
+                    statics.push(id);
                 }
             });
-            // By id, so that the outcome does not depend on the grid.
-            touched.sort_by_key(|touch| touch.0);
-            for (id, normal, other) in touched {
-                if other.mode.is_static() {
-                    cluster.touches.push(Touch {
-                        one: here,
-                        other: None,
-                        normal,
-                        speed: other.velocity.dot(&normal),
-                    });
-                    if !cluster.statics.contains(&id) {
-                        cluster.statics.push(id);
-                    }
-                    continue;
+            self.for_each_touching(member, TOUCHING, |id, normal, one, other| {
+                if other.mode != Mode::Normal {
+                    return;
                 }
-                let known = cluster.members.iter().position(|&known| known == id);
-                let there = match known {
+                let there = match members.iter().position(|&known| known == id) {
                     // Its contacts have been noted already.
-                    Some(there) if there < place => continue,
+                    Some(there) if there < place => return,
                     Some(there) => there,
-                    None if cluster.members.len() == MOST_MEMBERS => continue,
+                    None if members.len() == MOST_MEMBERS => return,
                     None => {
-                        cluster.members.push(id);
-                        cluster.members.len() - 1
+                        members.push(id);
+                        members.len() - 1
                     }
                 };
-                cluster.touches.push(Touch {
-                    one: here,
+                touches.push(Touch {
+                    one: Member {
+                        place,
+                        mass: one.mass,
+                    },
                     other: Some(Member {
                         place: there,
                         mass: other.mass,
                     }),
                     normal,
-                    speed: 0.0,
+                    speed: self.growth_speed(),
                 });
-            }
-            for wall in self.model.boundary().walls() {
-                if wall.distance(&one.position, now) - one.radius() < 0.5 * TOUCHING {
-                    let normal = wall.normal(&one.position, now);
-                    let speed = wall.velocity(&one.position, now).dot(&normal);
-                    cluster.touches.push(Touch {
-                        one: here,
-                        other: None,
-                        normal,
-                        speed,
-                    });
-                }
-            }
+            });
             place += 1;
         }
-        let growth = if M::Dynamics::GROWS {
+        cluster
+    }
+
+    /// Calls `visit` for every static grain and wall that touches a grain now,
+    /// with the grain's id.
+    fn for_each_static(
+        &self,
+        particle: u32,
+        tolerance: f64,
+        mut visit: impl FnMut(Touch<D>, Option<u32>),
+    ) {
+        let now = self.world.clock;
+        self.for_each_touching(particle, tolerance, |id, normal, one, other| {
+            if other.mode.is_static() {
+                let touch = Touch {
+                    one: Member {
+                        place: 0,
+                        mass: one.mass,
+                    },
+                    other: None,
+                    normal,
+                    speed: other.velocity.dot(&normal) + self.growth_speed(),
+                };
+                visit(touch, Some(id));
+            }
+        });
+        let one = self.world.particle_now(&self.model, particle);
+        for wall in self.model.boundary().walls() {
+            if wall.distance(&one.position, now) - one.radius() < 0.5 * tolerance {
+                let normal = wall.normal(&one.position, now);
+                let speed = wall.velocity(&one.position, now).dot(&normal);
+                let touch = Touch {
+                    one: Member {
+                        place: 0,
+                        mass: one.mass,
+                    },
+                    other: None,
+                    normal,
+                    speed: speed + self.growth_speed(),
+                };
+                visit(touch, None);
+            }
+        }
+    }
+
+    /// Calls `visit` for every grain that touches another now: its id, the
+    /// normal towards the other, the other and it.
+    fn for_each_touching(
+        &self,
+        particle: u32,
+        tolerance: f64,
+        mut visit: impl FnMut(u32, Vector<D>, &Particle<D>, &Particle<D>),
+    ) {
+        let one = self.world.particle_now(&self.model, particle);
+        let largest = self.world.largest * self.scale_at(self.world.clock);
+        let farthest = one.radius() + 0.5 * largest + tolerance;
+        let mut touched = Vec::new();
+        self.world
+            .near
+            .for_each_within(particle, farthest, |found| {
+                let Some((other, offset)) = self.world.nearest(&self.model, &one, &found) else {
+                    return;
+                };
+                let apart = -offset;
+                let contact = 0.5 * (one.diameter + other.diameter);
+                if apart.norm_squared() - contact * contact < tolerance {
+                    touched.push((found.particle, apart.normalize(), other));
+                }
+            });
+        // By id, so that the outcome does not depend on the grid.
+        touched.sort_by_key(|touch| touch.0);
+        for (id, normal, other) in &touched {
+            visit(*id, *normal, &one, other);
+        }
+    }
+
+    /// A bound on how fast growing grains come nearer by growth alone.
+    fn growth_speed(&self) -> f64 {
+        if M::Dynamics::GROWS {
             self.model.dynamics().growth_rate() * self.world.largest
         } else {
             0.0
-        };
-        for touch in &mut cluster.touches {
-            touch.speed += growth;
         }
-        cluster
     }
 }

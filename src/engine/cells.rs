@@ -152,10 +152,12 @@ impl<const D: usize> Cells<D> {
             .fold(f64::INFINITY, f64::min)
     }
 
-    /// The most rings of cells that are worth a look: beyond, everything has
-    /// been seen.
+    /// The most rings of cells that are worth a look: beyond, everybody has
+    /// been seen, and in all images within a period and the edge of a cell.
+    /// (One ring less would not do in a period of two diameters, which is a
+    /// single cell.)
     pub(super) fn rings(&self) -> i32 {
-        self.axes.iter().map(|axis| axis.count).max().unwrap_or(1)
+        self.axes.iter().map(|axis| axis.count).max().unwrap_or(1) + 1
     }
 
     /// Files a grain under the cell of another position.

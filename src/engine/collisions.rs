@@ -1,8 +1,8 @@
 //! Carrying out collisions.
 
 use crate::engine::cascade::Relief;
-use crate::engine::search::{Partner, Slot};
 use crate::engine::simulation::Simulation;
+use crate::engine::slot::{Partner, Slot};
 use crate::engine::view::View;
 use crate::model::{
     Boundary, CollisionRule, Dynamics, Impact, Model, Observer, Obstacle, Occurrence,
@@ -10,7 +10,6 @@ use crate::model::{
     WakeDecision, Wall,
 };
 use crate::particle::{Mode, Particle, ParticleId, Vector, WallId};
-use crate::time::Time;
 
 impl<M: Model<D>, const D: usize> Simulation<M, D> {
     /// A mobile grain meets another grain now.
@@ -79,7 +78,7 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
         }
 
         let sleep = self.ask_sleep(&impact, rebound.velocity, a);
-        let mirrored = Impact {
+        let mirrored = || Impact {
             id: ParticleId(b),
             particle: two,
             obstacle: Obstacle::Particle {
@@ -91,22 +90,24 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
         };
         let mut sleep_other = None;
         if kind == OccurrenceKind::Pair {
-            sleep_other = self.ask_sleep(&mirrored, rebound.other_velocity, b);
+            sleep_other = self.ask_sleep(&mirrored(), rebound.other_velocity, b);
         }
 
-        let run = self.traces.collided(a, Partner::Particle(b), now);
+        let run = self
+            .traces
+            .collided(a, Partner::Particle(b), !two_mobile, now);
         let held = (struck_static && !two_mobile && rebound.elastic).then_some(b);
         self.traces.hold(a, held, now);
         self.settle(a, one.position, rebound.velocity);
         let mut run_other = 0;
         if two_mobile {
-            run_other = self.traces.collided(b, Partner::Particle(a), now);
+            run_other = self.traces.collided(b, Partner::Particle(a), false, now);
             self.traces.hold(b, None, now);
             self.settle(b, stored_position, rebound.other_velocity);
         }
         if kind == OccurrenceKind::Wake {
             let cause = WakeCause::Hit {
-                impact: mirrored,
+                impact: mirrored(),
                 after: rebound.other_velocity,
             };
             self.tell_woken(b, &cause);
@@ -178,7 +179,9 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
         self.lift(&impact, &mut rebound);
         let sleep = self.ask_sleep(&impact, rebound.velocity, particle);
 
-        let run = self.traces.collided(particle, Partner::Wall(wall), now);
+        let run = self
+            .traces
+            .collided(particle, Partner::Wall(wall), true, now);
         self.traces.hold(particle, None, now);
         self.settle(particle, one.position, rebound.velocity);
         let relief = self.end_cascade(particle, run);
@@ -275,7 +278,8 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
         if least == 0.0 {
             return;
         }
-        let leaving = (rebound.velocity - impact.obstacle_velocity()).dot(&impact.normal);
+        let apart = rebound.velocity - impact.obstacle_velocity();
+        let leaving = apart.dot(&impact.normal) - impact.growth;
         if leaving < least {
             rebound.velocity += impact.normal * (least - leaving);
             self.counts.guard += 1;
@@ -343,43 +347,6 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
                     self.enqueue(particle);
                 }
             }
-        }
-    }
-
-    /// How long until a grain's next collision if everyone flies on as now.
-    fn next_collision(&mut self, particle: u32) -> Option<f64> {
-        let start = self.world.clock;
-        let horizon = start + self.settings.sleep_horizon;
-        let horizon = horizon.min(Time::LAST);
-        let mut first = horizon;
-        let mut any = false;
-        for wall in 0..self.model.boundary().walls().len() {
-            if let Some(time) = self.wall_contact(particle, WallId(wall as u16), first) {
-                first = time;
-                any = true;
-            }
-        }
-        let mut looked = 1.5 * self.world.largest;
-        loop {
-            let mut found = std::mem::take(&mut self.scratch);
-            found.clear();
-            self.world
-                .near
-                .for_each_within(particle, looked, |other| found.push(other));
-            for other in &found {
-                if let Some(time) = self.pair_contact(particle, other.particle, other.turns, first)
-                {
-                    first = time;
-                    any = true;
-                }
-            }
-            self.scratch = found;
-            // Whoever is farther than this away cannot come first.
-            let reach = self.reach(particle, first - start);
-            if reach <= looked || self.world.near.is_everything(particle, looked) {
-                return any.then_some(first - start);
-            }
-            looked = reach;
         }
     }
 }

@@ -3,18 +3,19 @@
 use std::cmp::Reverse;
 
 use crate::engine::queue::{Key, Rank};
-use crate::engine::search::Partner;
 use crate::engine::settings::{Limits, StopReason};
 use crate::engine::simulation::Simulation;
+use crate::engine::slot::Partner;
 use crate::model::{Flight, Model, Observer};
+use crate::time::Time;
 
 impl<M: Model<D>, const D: usize> Simulation<M, D> {
     /// Carries out events until a limit is reached, and says which.
     ///
     /// A run can go on after any stop but a collapse; where it stopped leaves no
     /// trace in the trajectory. Whoever watches is shown each physical event
-    /// just after it has happened. If everything is at rest, or nothing lies
-    /// ahead, before a finite time limit, the clock stays at the last event.
+    /// just after it has happened. If nothing lies ahead the clock shows the
+    /// time limit; if everything is frozen, the last event.
     pub fn run<O: Observer<D>>(&mut self, limits: &Limits, observer: &mut O) -> StopReason {
         loop {
             if let Some(collapse) = &self.collapse {
@@ -26,7 +27,14 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
             if self.counts.total() >= limits.events {
                 return StopReason::Events;
             }
-            let Some((key, source)) = self.next_event() else {
+            let next = self.next_event();
+            let due = next.as_ref().map_or(Time::NEVER, |(key, _)| key.time);
+            if self.regrid_at < due && self.regrid_at <= limits.time {
+                self.world.clock = self.regrid_at;
+                self.rebuild_grid();
+                continue;
+            }
+            let Some((key, source)) = next else {
                 if limits.time.is_finite() {
                     self.world.clock = self.world.clock.max(limits.time);
                     return StopReason::Time;
@@ -36,11 +44,6 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
             if key.time > limits.time {
                 self.world.clock = self.world.clock.max(limits.time);
                 return StopReason::Time;
-            }
-            if key.time > self.regrid_at {
-                self.world.clock = self.regrid_at;
-                self.rebuild_grid();
-                continue;
             }
             debug_assert!(
                 key.time >= self.world.clock,

@@ -3,7 +3,7 @@
 
 use std::ops::{Index, IndexMut};
 
-use crate::engine::search::Partner;
+use crate::engine::slot::Partner;
 use crate::time::Time;
 
 /// Collisions closer together than this, in √(d/g), are at one instant.
@@ -24,6 +24,8 @@ pub(super) struct Trace {
     pub(super) run: u32,
     /// When it last collided.
     pub(super) last: Time,
+    /// Collisions with static grains and walls since it last met a mobile one.
+    pub(super) confined: u32,
 }
 
 /// Static partners that a grain may not meet again before a time.
@@ -63,6 +65,7 @@ impl Traces {
             partner: Partner::Nobody,
             run: 0,
             last: Time::NEVER,
+            confined: 0,
         });
         if self.hold > 0.0 {
             self.holds.push(Holds::NONE);
@@ -74,9 +77,21 @@ impl Traces {
         self.holds.pop();
     }
 
-    /// Notes a collision; returns how many the grain has made at this instant.
-    pub(super) fn collided(&mut self, particle: u32, partner: Partner, now: Time) -> u32 {
+    /// Notes a collision, with a static obstacle or not; returns how many the
+    /// grain has made at this instant.
+    pub(super) fn collided(
+        &mut self,
+        particle: u32,
+        partner: Partner,
+        is_static: bool,
+        now: Time,
+    ) -> u32 {
         let trace = &mut self.traces[particle as usize];
+        trace.confined = if is_static {
+            trace.confined.wrapping_add(1)
+        } else {
+            0
+        };
         let at_once = trace.last.is_finite() && now - trace.last < INSTANT;
         trace.run = if at_once {
             trace.run.saturating_add(1)

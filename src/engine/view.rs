@@ -31,8 +31,9 @@ impl<M: Model<D>, const D: usize> Surroundings<D> for View<'_, M, D> {
         let scale = crate::engine::body::scale_at::<M, D>(self.model, self.world.clock);
         let farthest = range * 0.5 * (centre.diameter + self.world.largest * scale);
         self.world.near.for_each_within(of.0, farthest, |found| {
-            let other = self.world.particle_now(self.model, found.particle);
-            let offset = self.world.displacement(self.model, &centre, &other);
+            let Some((other, offset)) = self.world.nearest(self.model, &centre, &found) else {
+                return;
+            };
             let contact = 0.5 * (centre.diameter + other.diameter);
             let relative_distance = offset.norm() / contact;
             if relative_distance < range {

@@ -2,14 +2,23 @@ use std::fs::{self, File};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
-/// The files that a run writes, by which a run folder is known.
-const FILES: [&str; 5] = [
-    "scenario.toml",
-    "summary.json",
-    "series.csv",
-    "frames.xyz",
-    "events.csv",
-];
+/// True for the names of files that a run, or a picture of it, leaves behind.
+fn is_of_a_run(name: &str) -> bool {
+    let input = name
+        .strip_prefix("input-")
+        .and_then(|rest| rest.strip_suffix(".xyz"))
+        .is_some_and(|number| number.bytes().all(|byte| byte.is_ascii_digit()));
+    input
+        || [
+            "scenario.toml",
+            "summary.json",
+            "series.csv",
+            "frames.xyz",
+            "events.csv",
+            "picture.svg",
+        ]
+        .contains(&name)
+}
 
 /// Why a run folder can't be had.
 #[derive(Debug, thiserror::Error)]
@@ -55,8 +64,8 @@ impl RunFolder {
     /// When it may not.
     pub fn check(path: &Path, force: bool) -> Result<(), FolderError> {
         let folder = path.display().to_string();
-        let entries = match fs::read_dir(path) {
-            Ok(entries) => entries,
+        let names = match names_in(path) {
+            Ok(names) => names,
             Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(()),
             Err(error) if error.kind() == io::ErrorKind::NotADirectory => {
                 return Err(FolderError::NoFolder { folder });
@@ -68,10 +77,6 @@ impl RunFolder {
                 });
             }
         };
-        let mut names: Vec<String> = entries
-            .filter_map(|entry| Some(entry.ok()?.file_name().to_string_lossy().into_owned()))
-            .collect();
-        names.sort();
         match names.into_iter().next() {
             Some(found) if !force => Err(FolderError::Occupied { folder, found }),
             _ => Ok(()),
@@ -94,12 +99,10 @@ impl RunFolder {
             source,
         };
         fs::create_dir_all(path).map_err(|error| failed(path, error))?;
-        for name in FILES {
-            let file = folder.file(name);
-            match fs::remove_file(&file) {
-                Ok(()) => {}
-                Err(error) if error.kind() == io::ErrorKind::NotFound => {}
-                Err(error) => return Err(failed(&file, error)),
+        for name in names_in(path).map_err(|error| failed(path, error))? {
+            let file = folder.file(&name);
+            if is_of_a_run(&name) {
+                fs::remove_file(&file).map_err(|error| failed(&file, error))?;
             }
         }
         Ok(folder)
@@ -142,6 +145,15 @@ impl RunFolder {
             source,
         })
     }
+}
+
+/// The names of everything in a folder, in order.
+fn names_in(path: &Path) -> io::Result<Vec<String>> {
+    let mut names = fs::read_dir(path)?
+        .map(|entry| Ok(entry?.file_name().to_string_lossy().into_owned()))
+        .collect::<io::Result<Vec<String>>>()?;
+    names.sort();
+    Ok(names)
 }
 
 /// Writes a whole file, so that it is there complete or not at all: under

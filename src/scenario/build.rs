@@ -1,5 +1,6 @@
 //! From a scenario to grains, a boundary and the parts of a model.
 
+mod crowd;
 mod model;
 
 pub use model::{FloatingModel, GravityModel};
@@ -11,12 +12,16 @@ use crate::boundary::{self, Cuboid};
 use crate::error::SetupError;
 use crate::output::{Frame, XyzReader};
 use crate::particle::{Mode, Particle, ParticleId, Vector};
+use crate::scenario::build::crowd::pairs_in_reach;
 use crate::scenario::error::{Problem, ScenarioError};
 use crate::scenario::path::Path;
 use crate::scenario::read::Origin;
 use crate::scenario::schema::{Scenario, Side, Source, SourceKind};
 use crate::scenario::validate::MOST_GRAINS;
 use crate::setup;
+
+/// The most pairs of grains that are looked at before a run starts.
+const MOST_PAIRS: f64 = 2.0e9;
 
 /// The initial state of a scenario.
 #[derive(Clone, Debug)]
@@ -72,7 +77,33 @@ impl<const D: usize> Start<D> {
                 return Err(origin.refuse(source_path(index), problem).into());
             }
         }
+        start.refuse_crowds(origin)?;
         Ok(start)
+    }
+
+    /// Refuses what would take hours to be looked through before it starts.
+    fn refuse_crowds(&self, origin: &Origin) -> Result<(), ScenarioError> {
+        let pairs = pairs_in_reach(&self.grains);
+        if pairs <= MOST_PAIRS {
+            return Ok(());
+        }
+        let largest = (0..self.grains.len())
+            .max_by(|&a, &b| self.grains[a].diameter.total_cmp(&self.grains[b].diameter))
+            .unwrap_or(0);
+        let problem = Problem::Value {
+            found: format!(
+                "the source of grain {largest}, of diameter {}, which brings {pairs:.1e} pairs of \
+                 grains within reach of each other",
+                self.grains[largest].diameter
+            ),
+            allowed: format!(
+                "at most {MOST_PAIRS:e} pairs are allowed: too many small grains beside too large \
+                 ones, or too many at one place"
+            ),
+        };
+        Err(origin
+            .refuse(source_path(self.source_of(largest)), problem)
+            .into())
     }
 
     fn add(

@@ -1,0 +1,272 @@
+//! Brute-force audits: after every event of small random systems of all kinds,
+//! what the book-keeping promises is compared with all pairs in all images.
+
+mod restless;
+mod systems;
+
+use crate::engine::settings::{Limits, StopReason};
+use crate::engine::simulation::Simulation;
+use crate::engine::slot::Partner;
+use crate::model::{Boundary, Model, Wall};
+use crate::observe::TrajectoryHash;
+use crate::particle::{Mode, ParticleId, WallId};
+use crate::time::Time;
+use systems::{Case, Outcome};
+
+/// Deeper than this is no rounding.
+const DEEP: f64 = 1.0e-9;
+
+/// All combinations of −1, 0, 1.
+fn images<const D: usize>() -> impl Iterator<Item = [i32; D]> {
+    (0..3_i32.pow(D as u32)).map(|number| {
+        let mut rest = number;
+        std::array::from_fn(|_| {
+            let digit = rest % 3 - 1;
+            rest /= 3;
+            digit
+        })
+    })
+}
+
+/// How many periods to add to the place of `other` to have the image nearest to
+/// `one`, and `more`; `None` for images along axes without a period.
+fn turns_between<M: Model<D>, const D: usize>(
+    simulation: &Simulation<M, D>,
+    one: u32,
+    other: u32,
+    more: [i32; D],
+) -> Option<[i32; D]> {
+    let (world, model) = (&simulation.world, &simulation.model);
+    let here = world.particle_now(model, one).position;
+    let there = world.particle_now(model, other).position;
+    let mut turns = [0; D];
+    for axis in 0..D {
+        match model.boundary().period(axis) {
+            Some(period) => {
+                let nearest = libm::rint((here[axis] - there[axis]) / period.length);
+                turns[axis] = nearest as i32 + more[axis];
+            }
+            None if more[axis] != 0 => return None,
+            None => {}
+        }
+    }
+    Some(turns)
+}
+
+/// Every contact must be noted by one of the two, or lie beyond the next entry
+/// of one of them.
+fn audit_contacts<M: Model<D>, const D: usize>(
+    simulation: &mut Simulation<M, D>,
+) -> Result<(), String> {
+    let count = simulation.world.bodies.len() as u32;
+    let deepest = simulation.deepest;
+    for one in 0..count {
+        let mobile = simulation.world.bodies[one as usize].mode.is_mobile();
+        // Growing grains are all predicted anew when the grid is.
+        let own = simulation.slots[one as usize]
+            .key(one)
+            .time
+            .min(simulation.regrid_at);
+        for wall in 0..simulation.model.boundary().walls().len() {
+            let wall = WallId(wall as u16);
+            if let Some(time) = simulation.wall_contact(one, wall, Time::NEVER)
+                && mobile
+                && time < own
+            {
+                return Err(format!("{one} meets wall {wall} at {time} before {own}"));
+            }
+        }
+        for other in one + 1..count {
+            let theirs = simulation.slots[other as usize].key(other).time;
+            for more in images::<D>() {
+                let Some(turns) = turns_between(simulation, one, other, more) else {
+                    continue;
+                };
+                let known = own.min(theirs);
+                if let Some(time) = simulation.pair_contact(one, other, turns, known)
+                    && time < known
+                {
+                    return Err(format!(
+                        "{one} and {other} (turns {turns:?}) meet at {time}, but at {} their entries are {own} and {theirs}: {:?} {:?}",
+                        simulation.world.clock,
+                        simulation.world.bodies[one as usize],
+                        simulation.world.bodies[other as usize],
+                    ));
+                }
+            }
+        }
+    }
+    simulation.deepest = deepest;
+    Ok(())
+}
+
+/// Every entry of a list is also on the list of the other, if that has one.
+fn audit_lists<M: Model<D>, const D: usize>(simulation: &Simulation<M, D>) -> Result<(), String> {
+    let near = &simulation.world.near;
+    for one in 0..simulation.world.bodies.len() as u32 {
+        for entry in near.list(one) {
+            if near.is_tied(entry.particle)
+                && !near.list(entry.particle).contains(&entry.seen_from(one))
+            {
+                return Err(format!("{one} lists {entry:?}, which does not list it"));
+            }
+        }
+        if let Partner::Particle(other) = simulation.slots[one as usize].partner
+            && other as usize >= simulation.world.bodies.len()
+        {
+            return Err(format!("{one} waits for {other}, who is not there"));
+        }
+    }
+    let modes = simulation.mode_counts();
+    let mobile = simulation
+        .world
+        .bodies
+        .iter()
+        .filter(|body| body.mode.is_mobile());
+    if mobile.count() != modes.mobile() {
+        return Err(format!("{modes:?} is miscounted"));
+    }
+    Ok(())
+}
+
+/// The deepest overlap now of a mobile grain with anybody or any wall.
+fn deepest_overlap<M: Model<D>, const D: usize>(simulation: &Simulation<M, D>) -> f64 {
+    let grains = simulation.snapshot();
+    let boundary = simulation.model.boundary();
+    let mut deepest: f64 = 0.0;
+    for (place, one) in grains.iter().enumerate() {
+        for wall in boundary.walls() {
+            if one.mode.is_mobile() {
+                let gap = wall.distance(&one.position, simulation.time()) - one.radius();
+                deepest = deepest.max(-gap);
+            }
+        }
+        for other in &grains[..place] {
+            if one.mode.is_static() && other.mode.is_static() {
+                continue;
+            }
+            let apart = boundary.displacement(&one.position, &other.position).norm();
+            deepest = deepest.max(0.5 * (one.diameter + other.diameter) - apart);
+        }
+    }
+    deepest
+}
+
+/// The trajectory's hash if the run is stopped every so often, and whatever
+/// the search for neighbours has stored is then made anew.
+fn hash_of<M: Model<D>, const D: usize>(
+    mut simulation: Simulation<M, D>,
+    events: u64,
+    slice: Option<f64>,
+) -> u64 {
+    let mut hash = TrajectoryHash::new();
+    let end = simulation.time() + 5.0;
+    let mut stop = simulation.time();
+    while stop < end {
+        stop = slice.map_or(end, |slice| end.min(stop + slice));
+        let limits = Limits {
+            time: stop,
+            ..Limits::events(events)
+        };
+        if simulation.run(&limits, &mut hash) != StopReason::Time {
+            break;
+        }
+        if slice.is_some() {
+            simulation.lay_grid();
+            for particle in 0..simulation.world.bodies.len() as u32 {
+                simulation.predict(particle);
+            }
+        }
+    }
+    hash.value()
+}
+
+/// Runs a simulation event by event and audits it after each.
+fn audit<M: Model<D>, const D: usize>(
+    case: &Case<D>,
+    mut simulation: Simulation<M, D>,
+) -> Result<Outcome, String> {
+    let mut outcome = Outcome::default();
+    audit_contacts(&mut simulation)?;
+    let mut newcomers = case.newcomers.iter();
+    for step in 0..case.events {
+        if step % 23 == 22
+            && let Some(newcomer) = newcomers.next()
+            // Refused if there is no room; the simulation is then as before.
+            && simulation.insert(*newcomer).is_ok()
+        {
+            outcome.inserted += 1;
+            audit_contacts(&mut simulation)?;
+            audit_lists(&simulation)?;
+        }
+        let limits = if step % 7 == 3 {
+            // A stop between events.
+            Limits::until(simulation.time() + 0.01)
+        } else {
+            Limits {
+                time: simulation.time() + 20.0,
+                ..Limits::events(simulation.counts().total() + 1)
+            }
+        };
+        let before = simulation.time();
+        match simulation.run(&limits, &mut ()) {
+            StopReason::Collapse(_) => break,
+            StopReason::Time if step % 7 != 3 => break,
+            _ => {}
+        }
+        if simulation.time() < before {
+            return Err(format!(
+                "the clock went back from {before} to {}",
+                simulation.time()
+            ));
+        }
+        audit_contacts(&mut simulation)?;
+        audit_lists(&simulation)?;
+        if !case.crushes {
+            let depth = deepest_overlap(&simulation);
+            if depth > DEEP {
+                return Err(format!("overlap of {depth:e} at {}", simulation.time()));
+            }
+        }
+    }
+    outcome.events = simulation.counts().total();
+    outcome.sleeps = simulation.counts().sleep;
+    outcome.wakes = simulation.counts().wake + simulation.counts().check_wake;
+    for id in 0..simulation.world.bodies.len() as u32 {
+        let grain = simulation.particle(ParticleId(id));
+        if grain.mode != Mode::Fixed && !grain.position.iter().all(|x| x.is_finite()) {
+            return Err(format!("{id} is nowhere: {grain:?}"));
+        }
+    }
+    Ok(outcome)
+}
+
+fn audit_many<const D: usize>(seeds: std::ops::Range<u64>) {
+    let mut total = Outcome::default();
+    let mut failures = Vec::new();
+    for seed in seeds {
+        let case = Case::<D>::random(seed);
+        match systems::run(&case) {
+            Ok(outcome) => total = total + outcome,
+            Err(failure) => failures.push(format!("{D}D seed {seed} ({}): {failure}", case.what)),
+        }
+    }
+    assert!(
+        failures.is_empty(),
+        "{} failures\n{}",
+        failures.len(),
+        failures.join("\n")
+    );
+    // The audit has seen what it is about.
+    assert!(total.events > 1000 && total.sleeps > 10 && total.wakes > 10 && total.inserted > 10);
+}
+
+#[test]
+fn nothing_is_missed_in_space() {
+    audit_many::<3>(0..400);
+}
+
+#[test]
+fn nothing_is_missed_in_the_plane() {
+    audit_many::<2>(0..800);
+}
