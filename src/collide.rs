@@ -85,6 +85,10 @@ impl Restitution {
 impl<const D: usize> CollisionRule<D> for Restitution {
     type Spin = ();
 
+    fn validate(&self) -> Result<(), SetupError> {
+        self.validated().map(drop)
+    }
+
     #[inline]
     fn collide(&self, impact: &Impact<D>, _spins: Spins<'_, ()>) -> Rebound<D> {
         let closing = impact.closing_speed();

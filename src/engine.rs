@@ -11,6 +11,7 @@ mod cells;
 mod collisions;
 mod counts;
 mod events;
+mod foresight;
 mod guards;
 mod neighbours;
 mod projection;
@@ -19,6 +20,7 @@ mod search;
 mod settings;
 mod setup;
 mod simulation;
+mod slot;
 mod transitions;
 mod view;
 

@@ -160,7 +160,11 @@ impl std::ops::Sub for Time {
         if self == Time::NEVER {
             return f64::INFINITY;
         }
-        self.ticks.wrapping_sub(earlier.ticks) as f64 * TICK + (self.rest - earlier.rest)
+        let ticks = match self.ticks.checked_sub(earlier.ticks) {
+            Some(ticks) => ticks as f64,
+            None => self.ticks as f64 - earlier.ticks as f64,
+        };
+        ticks * TICK + (self.rest - earlier.rest)
     }
 }
 
@@ -305,6 +309,12 @@ mod tests {
         assert_eq!(Time::NEVER + 1.0, Time::NEVER);
         assert!(Time::LAST < Time::NEVER);
         assert_eq!(Time::NEVER - Time::ZERO, f64::INFINITY);
+    }
+
+    #[test]
+    fn the_longest_time_is_no_negative_one() {
+        assert_eq!(Time::LAST - Time::FIRST, 1.0 / TICK * 16.0);
+        assert_eq!(Time::FIRST - Time::LAST, -1.0 / TICK * 16.0);
     }
 
     #[test]

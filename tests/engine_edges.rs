@@ -174,3 +174,96 @@ fn grains_at_rest_grow_until_they_touch() {
     }
     assert!((last.units() - 2.0).abs() < 1.0e-12);
 }
+
+type Grains = Vec<Particle<3>>;
+
+fn is_refused<M: Model<3>>(model: M, grains: Grains) -> bool {
+    Simulation::new(model, grains).is_err()
+}
+
+/// Numbers with which nothing sensible, or nothing at all, would come of a run.
+#[test]
+fn odd_numbers_are_refused() {
+    use grainfall::dynamics::{Growing, UniformGravity};
+    use grainfall::policy::{SelfCheck, SlowDescent};
+    let open = Cuboid::<3>::open;
+    let grain = || Particle::new(Vector::<3>::zeros(), Vector::<3>::zeros());
+    for odd in [f64::NAN, f64::INFINITY, -1.0, 1.0e300, 1.0e-300] {
+        assert!(is_refused(
+            elastic(ForceFree, open()),
+            vec![grain().with_diameter(odd)]
+        ));
+        assert!(is_refused(
+            elastic(ForceFree, open()),
+            vec![grain().with_mass(odd)]
+        ));
+    }
+    for odd in [f64::NAN, f64::INFINITY, 1.0e30] {
+        let mut fast = grain();
+        fast.velocity.x = odd;
+        assert!(is_refused(elastic(ForceFree, open()), vec![fast]));
+        let gravity = UniformGravity::new(Vector::<3>::new(odd, 0.0, 0.0));
+        assert!(is_refused(elastic(gravity, open()), vec![grain()]));
+    }
+    for odd in [f64::NAN, -1.0] {
+        assert!(is_refused(
+            elastic(Growing::new(ForceFree, odd), open()),
+            vec![grain()]
+        ));
+        for policy in [
+            SlowDescent {
+                sleep_speed: odd,
+                ..SlowDescent::default()
+            },
+            SlowDescent {
+                wake_speed: odd,
+                ..SlowDescent::default()
+            },
+            SlowDescent {
+                frozen_restitution: odd,
+                ..SlowDescent::default()
+            },
+            SlowDescent {
+                store_time: Some(odd),
+                ..SlowDescent::default()
+            },
+        ] {
+            assert!(is_refused(
+                elastic(ForceFree, open()).with_policy(policy),
+                vec![grain()]
+            ));
+        }
+        let rule = Restitution {
+            restitution: odd,
+            ..Restitution::default()
+        };
+        assert!(is_refused(
+            elastic(ForceFree, open()).with_collision_rule(rule),
+            vec![grain()]
+        ));
+    }
+    for interval in [0.0, -1.0, f64::NAN, 1.0e-30, f64::INFINITY] {
+        let check = SelfCheck {
+            interval,
+            ..SelfCheck::default()
+        };
+        let policy = SlowDescent {
+            self_check: Some(check),
+            ..SlowDescent::default()
+        };
+        assert!(is_refused(
+            elastic(ForceFree, open()).with_policy(policy),
+            vec![grain()]
+        ));
+    }
+}
+
+#[test]
+fn a_box_may_be_empty() {
+    let boundary = Cuboid::new([Side::periodic(4.0); 3]).unwrap();
+    let mut simulation = Simulation::new(elastic(ForceFree, boundary), Vec::new()).unwrap();
+    assert_eq!(
+        simulation.run(&Limits::default(), &mut ()),
+        StopReason::NothingLeft
+    );
+}

@@ -1,3 +1,4 @@
+use crate::error::SetupError;
 use crate::model::{Dynamics, Motion};
 use crate::particle::Vector;
 use crate::time::Time;
@@ -33,6 +34,17 @@ impl<const D: usize, Y: Dynamics<D>> Dynamics<D> for Growing<Y> {
 
     fn ground_velocity(&self, position: &Vector<D>, time: Time) -> Vector<D> {
         self.inner.ground_velocity(position, time)
+    }
+
+    fn validate(&self) -> Result<(), SetupError> {
+        if !(self.rate >= 0.0 && self.rate.is_finite()) {
+            return Err(SetupError::Parameter {
+                field: "growth rate",
+                value: self.rate,
+                allowed: "0 or more is allowed",
+            });
+        }
+        self.inner.validate()
     }
 
     fn growth_rate(&self) -> f64 {

@@ -1,4 +1,5 @@
 use crate::dynamics::Parabola;
+use crate::error::SetupError;
 use crate::model::{Dynamics, Motion};
 use crate::particle::{Mode, Vector};
 use crate::time::Time;
@@ -38,6 +39,17 @@ impl<const D: usize> Dynamics<D> for UniformGravity<D> {
                 Mode::Normal => self.gravity,
                 Mode::Falling | Mode::Frozen | Mode::Fixed => Vector::zeros(),
             },
+        }
+    }
+
+    fn validate(&self) -> Result<(), SetupError> {
+        match self.gravity.iter().find(|g| g.is_nan() || g.abs() > 1.0e9) {
+            None => Ok(()),
+            Some(&value) => Err(SetupError::Parameter {
+                field: "gravity",
+                value,
+                allowed: "components between -1e9 and 1e9 are allowed",
+            }),
         }
     }
 

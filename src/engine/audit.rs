@@ -4,9 +4,9 @@
 mod restless;
 mod systems;
 
-use crate::engine::search::Partner;
 use crate::engine::settings::{Limits, StopReason};
 use crate::engine::simulation::Simulation;
+use crate::engine::slot::Partner;
 use crate::model::{Boundary, Model, Wall};
 use crate::observe::TrajectoryHash;
 use crate::particle::{Mode, ParticleId, WallId};

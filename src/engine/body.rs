@@ -17,6 +17,8 @@ pub(super) struct Body<const D: usize> {
     /// Radius at t = 0, in d.
     pub(super) radius: f64,
     pub(super) mode: Mode,
+    /// Static and not moving along.
+    pub(super) still: bool,
     /// Counts the changes of this state, so that events foreseen before the
     /// last one can be told.
     pub(super) stamp: u32,
@@ -76,6 +78,7 @@ impl<const D: usize> World<D> {
             *self.modes.of(mode) += 1;
             body.mode = mode;
         }
+        body.still = mode.is_static() && flight_of(model, particle, body).is_at_rest();
         for axis in 0..D {
             let Some(period) = model.boundary().period(axis) else {
                 continue;

@@ -1,9 +1,9 @@
 //! The cascade guard and the collapse detector.
 
 use crate::engine::projection::{Member, Touch, project};
-use crate::engine::search::Partner;
 use crate::engine::settings::Collapse;
 use crate::engine::simulation::Simulation;
+use crate::engine::slot::Partner;
 use crate::model::{Boundary, Dynamics, Model, Wall};
 use crate::particle::{Mode, Particle, ParticleId, Vector};
 

@@ -1,8 +1,8 @@
 //! Carrying out collisions.
 
 use crate::engine::cascade::Relief;
-use crate::engine::search::{Partner, Slot};
 use crate::engine::simulation::Simulation;
+use crate::engine::slot::{Partner, Slot};
 use crate::engine::view::View;
 use crate::model::{
     Boundary, CollisionRule, Dynamics, Impact, Model, Observer, Obstacle, Occurrence,
@@ -10,7 +10,6 @@ use crate::model::{
     WakeDecision, Wall,
 };
 use crate::particle::{Mode, Particle, ParticleId, Vector, WallId};
-use crate::time::Time;
 
 impl<M: Model<D>, const D: usize> Simulation<M, D> {
     /// A mobile grain meets another grain now.
@@ -79,7 +78,7 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
         }
 
         let sleep = self.ask_sleep(&impact, rebound.velocity, a);
-        let mirrored = Impact {
+        let mirrored = || Impact {
             id: ParticleId(b),
             particle: two,
             obstacle: Obstacle::Particle {
@@ -91,7 +90,7 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
         };
         let mut sleep_other = None;
         if kind == OccurrenceKind::Pair {
-            sleep_other = self.ask_sleep(&mirrored, rebound.other_velocity, b);
+            sleep_other = self.ask_sleep(&mirrored(), rebound.other_velocity, b);
         }
 
         let run = self
@@ -108,7 +107,7 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
         }
         if kind == OccurrenceKind::Wake {
             let cause = WakeCause::Hit {
-                impact: mirrored,
+                impact: mirrored(),
                 after: rebound.other_velocity,
             };
             self.tell_woken(b, &cause);
@@ -348,43 +347,6 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
                     self.enqueue(particle);
                 }
             }
-        }
-    }
-
-    /// How long until a grain's next collision if everyone flies on as now.
-    fn next_collision(&mut self, particle: u32) -> Option<f64> {
-        let start = self.world.clock;
-        let horizon = start + self.settings.sleep_horizon;
-        let horizon = horizon.min(Time::LAST);
-        let mut first = horizon;
-        let mut any = false;
-        for wall in 0..self.model.boundary().walls().len() {
-            if let Some(time) = self.wall_contact(particle, WallId(wall as u16), first) {
-                first = time;
-                any = true;
-            }
-        }
-        let mut looked = 1.5 * self.world.largest;
-        loop {
-            let mut found = std::mem::take(&mut self.scratch);
-            found.clear();
-            self.world
-                .near
-                .for_each_within(particle, looked, |other| found.push(other));
-            for other in &found {
-                if let Some(time) = self.pair_contact(particle, other.particle, other.turns, first)
-                {
-                    first = time;
-                    any = true;
-                }
-            }
-            self.scratch = found;
-            // Whoever is farther than this away cannot come first.
-            let reach = self.reach(particle, first - start);
-            if reach <= looked || self.world.near.is_everything(particle, looked) {
-                return any.then_some(first - start);
-            }
-            looked = reach;
         }
     }
 }

@@ -3,9 +3,9 @@
 use std::cmp::Reverse;
 
 use crate::engine::queue::{Key, Rank};
-use crate::engine::search::Partner;
 use crate::engine::settings::{Limits, StopReason};
 use crate::engine::simulation::Simulation;
+use crate::engine::slot::Partner;
 use crate::model::{Flight, Model, Observer};
 use crate::time::Time;
 

@@ -3,7 +3,7 @@
 
 use std::ops::{Index, IndexMut};
 
-use crate::engine::search::Partner;
+use crate::engine::slot::Partner;
 use crate::time::Time;
 
 /// Collisions closer together than this, in √(d/g), are at one instant.

@@ -14,11 +14,9 @@
 
 use crate::engine::body::scale_at;
 use crate::engine::cells::Found;
-use crate::engine::queue::{Key, Rank};
 use crate::engine::simulation::Simulation;
-use crate::model::{
-    Approach, Boundary, Dynamics, Encounter, Flight, FlightOf, Forecast, Model, Predictor,
-};
+use crate::engine::slot::{Partner, contact_key};
+use crate::model::{Approach, Boundary, Dynamics, Encounter, Flight, Forecast, Model, Predictor};
 use crate::particle::{Vector, WallId};
 use crate::time::Time;
 
@@ -29,80 +27,16 @@ const IMAGE: f64 = 1.0 + 1.0e-6;
 /// Covers the rounding of a comparison of squared distances.
 const ROUND: f64 = 1.0 + 1.0e-12;
 
-/// Who a grain meets.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Partner {
-    Nobody,
-    Particle(u32),
-    Wall(WallId),
-}
+/// A contact later than this, in √(d/g), bounds nobody's reach.
+const FAR: f64 = 1.0e3;
 
-/// What lies ahead of a grain.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Slot {
-    /// Its next contact, as far as it has to know.
-    pub(super) contact: Time,
-    pub(super) partner: Partner,
-    /// The partner's stamp when this was foreseen.
-    pub(super) partner_stamp: u32,
-    /// Until when its neighbour list is certain to be complete.
-    pub(super) renewal: Time,
-    /// When it falls asleep, if it is about to.
-    pub(super) sleep: Time,
-}
-
-impl Slot {
-    pub(super) const EMPTY: Slot = Slot {
-        contact: Time::NEVER,
-        partner: Partner::Nobody,
-        partner_stamp: 0,
-        renewal: Time::NEVER,
-        sleep: Time::NEVER,
-    };
-
-    /// When the grain will be predicted anew.
-    #[inline]
-    pub(super) fn bound(&self) -> Time {
-        self.contact.min(self.sleep)
-    }
-
-    /// The order of this contact among those at the same time.
-    #[inline]
-    fn contact_key(&self, particle: u32) -> Key {
-        contact_key(particle, self.contact, self.partner)
-    }
-
-    /// The entry of a grain with this slot.
-    pub(super) fn key(&self, particle: u32) -> Key {
-        let own = |time, rank| Key {
-            time,
-            rank,
-            low: particle,
-            high: particle,
-        };
-        self.contact_key(particle)
-            .min(own(self.sleep, Rank::Sleep))
-            .min(own(self.renewal, Rank::Transfer))
-    }
-}
-
-#[inline]
-fn contact_key(particle: u32, time: Time, partner: Partner) -> Key {
-    let (rank, other) = match partner {
-        Partner::Particle(other) => (Rank::Contact, other),
-        Partner::Wall(wall) => (Rank::Wall, u32::from(wall.0)),
-        Partner::Nobody => (Rank::Transfer, particle),
-    };
-    let (low, high) = match rank {
-        Rank::Contact => (particle.min(other), particle.max(other)),
-        _ => (particle, other),
-    };
-    Key {
-        time,
-        rank,
-        low,
-        high,
-    }
+/// Where a mobile grain is at its last event, and how far its surface comes
+/// before its next known contact.
+struct Sight<const D: usize> {
+    position: Vector<D>,
+    since: Time,
+    within: f64,
+    reach: f64,
 }
 
 impl<M: Model<D>, const D: usize> Simulation<M, D> {
@@ -133,12 +67,16 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
             {
                 found.swap(0, place);
             }
-            let flight = self.world.flight(&self.model, particle);
+            let mut sight = self.sight(particle);
             for (place, other) in found.iter().enumerate() {
+                let mut nearer = false;
                 if place == 1 {
-                    self.meet_walls(particle);
+                    nearer = self.meet_walls(particle);
                 }
-                self.meet(&flight, particle, other);
+                nearer |= self.meet(&sight, particle, other);
+                if nearer {
+                    sight = self.sight(particle);
+                }
             }
             if found.len() < 2 {
                 self.meet_walls(particle);
@@ -158,57 +96,67 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
     fn tell_neighbours(&mut self, particle: u32, found: &[Found<D>]) {
         for other in found {
             if self.world.bodies[other.particle as usize].mode.is_mobile() {
-                let flight = self.world.flight(&self.model, other.particle);
-                if self.meet(&flight, other.particle, &other.seen_from(particle)) {
+                let sight = self.sight(other.particle);
+                if self.meet(&sight, other.particle, &other.seen_from(particle)) {
                     self.enqueue(other.particle);
                 }
             }
         }
     }
 
+    /// Where a mobile grain is and how far it comes.
+    #[inline]
+    fn sight(&self, particle: u32) -> Sight<D> {
+        let body = &self.world.bodies[particle as usize];
+        let flight = self.world.flight(&self.model, particle);
+        let within = self.slots[particle as usize].contact - body.since;
+        let travel = if within < FAR && !M::Dynamics::GROWS {
+            flight.speed_bound(within) * within
+        } else {
+            f64::INFINITY
+        };
+        Sight {
+            position: flight.position(0.0),
+            since: body.since,
+            within,
+            reach: body.radius + travel,
+        }
+    }
+
     /// Whether another grain is out of a mobile grain's reach up to the grain's
     /// next known contact. Most are, and this is cheap.
     #[inline]
-    fn is_out_of_reach(&self, flight: &FlightOf<M, D>, particle: u32, other: &Found<D>) -> bool {
-        let body = &self.world.bodies[particle as usize];
+    fn is_out_of_reach(&self, sight: &Sight<D>, other: &Found<D>) -> bool {
         let far = &self.world.bodies[other.particle as usize];
-        if M::Dynamics::GROWS {
-            return false;
-        }
-        let since_far = body.since - far.since;
-        let within = self.slots[particle as usize].contact - body.since;
-        if since_far < 0.0 || within > 1.0e3 {
-            return false;
-        }
-        let mut speed = flight.speed_bound(within);
-        let mut apart = -flight.position(0.0);
-        let far_flight = self.world.flight(&self.model, other.particle);
-        // Not by its velocity: a fixed grain's path may be prescribed.
-        if far_flight.is_at_rest() {
-            apart += far_flight.position(0.0);
-        } else {
-            apart += far_flight.position(since_far);
-            speed += far_flight.speed_bound(since_far + within);
+        let mut reach = sight.reach + far.radius;
+        let mut apart = far.position - sight.position;
+        if !far.still {
+            let since_far = sight.since - far.since;
+            if since_far < 0.0 || reach == f64::INFINITY {
+                return false;
+            }
+            let flight = self.world.flight(&self.model, other.particle);
+            apart = flight.position(since_far) - sight.position;
+            reach += flight.speed_bound(since_far + sight.within) * sight.within;
         }
         if other.turns != [0; D] {
             apart += self.shift(other.turns, 1);
         }
-        let reach = body.radius + far.radius + speed * within;
         apart.norm_squared() > ROUND * reach * reach
     }
 
     /// Notes a mobile grain's contact with another if it comes first; true if
     /// it did.
     #[inline]
-    fn meet(&mut self, flight: &FlightOf<M, D>, particle: u32, other: &Found<D>) -> bool {
-        if self.is_out_of_reach(flight, particle, other) {
+    fn meet(&mut self, sight: &Sight<D>, particle: u32, other: &Found<D>) -> bool {
+        if self.is_out_of_reach(sight, other) {
             return false;
         }
-        let slot = self.slots[particle as usize];
-        let Some(time) = self.pair_contact(particle, other.particle, other.turns, slot.contact)
-        else {
+        let until = self.slots[particle as usize].contact;
+        let Some(time) = self.pair_contact(particle, other.particle, other.turns, until) else {
             return false;
         };
+        let slot = self.slots[particle as usize];
         let partner = Partner::Particle(other.particle);
         let first = contact_key(particle, time, partner) < slot.contact_key(particle);
         if !first || time > self.slots[other.particle as usize].bound() {
@@ -222,8 +170,9 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
         true
     }
 
-    /// Notes a grain's contact with a wall if it comes first.
-    fn meet_walls(&mut self, particle: u32) {
+    /// Notes a grain's contact with a wall if it comes first; true if it did.
+    fn meet_walls(&mut self, particle: u32) -> bool {
+        let mut nearer = false;
         for wall in 0..self.model.boundary().walls().len() {
             let wall = WallId(wall as u16);
             let slot = self.slots[particle as usize];
@@ -235,8 +184,10 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
                 let slot = &mut self.slots[particle as usize];
                 slot.contact = time;
                 slot.partner = partner;
+                nearer = true;
             }
         }
+        nearer
     }
 
     /// The first contact of two grains after the later of their last events and

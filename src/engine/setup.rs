@@ -7,11 +7,13 @@ use crate::engine::counts::{Counts, ModeCounts};
 use crate::engine::guards::Traces;
 use crate::engine::neighbours::Neighbours;
 use crate::engine::queue::EventQueue;
-use crate::engine::search::Slot;
 use crate::engine::settings::Settings;
 use crate::engine::simulation::Simulation;
+use crate::engine::slot::Slot;
 use crate::error::SetupError;
-use crate::model::{Boundary, Commands, MemoryOf, Model, SpinOf, Wall};
+use crate::model::{
+    Boundary, CollisionRule, Commands, Dynamics, Flight, MemoryOf, Model, SpinOf, StatePolicy, Wall,
+};
 use crate::particle::{Mode, Particle, ParticleId, WallId};
 use crate::time::Time;
 
@@ -40,6 +42,16 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
         settings: Settings,
     ) -> Result<Self, SetupError> {
         settings.guards.validate()?;
+        model.dynamics().validate()?;
+        model.collision_rule().validate()?;
+        model.state_policy().validate()?;
+        if !settings.start.is_finite() {
+            return Err(SetupError::Parameter {
+                field: "start",
+                value: settings.start.units(),
+                allowed: "a time that comes is allowed",
+            });
+        }
         let horizon = settings.sleep_horizon;
         if !(horizon > 0.0 && horizon.is_finite()) {
             return Err(SetupError::Parameter {
@@ -61,6 +73,13 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
             largest = largest.max(particle.diameter);
         }
         let scale = scale_at::<M, D>(&model, settings.start);
+        if scale.is_nan() || scale <= 0.0 {
+            return Err(SetupError::Parameter {
+                field: "start",
+                value: settings.start.units(),
+                allowed: "a time at which diameters are positive is allowed",
+            });
+        }
         check_periods(&model, largest * scale)?;
         let count = particles.len();
         let near = Neighbours::new(model.boundary(), &[], 1.0);
@@ -156,8 +175,12 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
             since: self.world.clock,
             radius: 0.5 * particle.diameter / scale,
             mode: particle.mode,
+            still: false,
             stamp: 0,
         });
+        let index = self.world.bodies.len() as u32 - 1;
+        let at_rest = self.world.flight(&self.model, index).is_at_rest();
+        self.world.bodies[index as usize].still = particle.mode.is_static() && at_rest;
         self.world.masses.push(particle.mass);
         *self.world.modes.of(particle.mode) += 1;
         self.traces.add();
@@ -240,20 +263,16 @@ fn validate<const D: usize>(id: ParticleId, particle: &Particle<D>) -> Result<()
         }
     }
     for &v in particle.velocity.iter() {
-        if !v.is_finite() {
-            return refuse("velocity", v, "finite components are allowed");
+        // Faster ones would leave their neighbours in no representable time.
+        if v.is_nan() || v.abs() > 1.0e9 {
+            return refuse("velocity", v, "components between -1e9 and 1e9 are allowed");
         }
     }
-    let positive = |value: f64| value > 0.0 && value.is_finite();
-    if !positive(particle.diameter) {
-        return refuse(
-            "diameter",
-            particle.diameter,
-            "a positive number is allowed",
-        );
+    if !(1.0e-9..=1.0e9).contains(&particle.diameter) {
+        return refuse("diameter", particle.diameter, "1e-9 … 1e9 is allowed");
     }
-    if !positive(particle.mass) {
-        return refuse("mass", particle.mass, "a positive number is allowed");
+    if !(1.0e-30..=1.0e30).contains(&particle.mass) {
+        return refuse("mass", particle.mass, "1e-30 … 1e30 is allowed");
     }
     Ok(())
 }

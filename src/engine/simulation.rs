@@ -7,8 +7,8 @@ use crate::engine::counts::{Counts, ModeCounts};
 use crate::engine::guards::Traces;
 use crate::engine::neighbours::Neighbours;
 use crate::engine::queue::EventQueue;
-use crate::engine::search::Slot;
 use crate::engine::settings::{Collapse, Settings};
+use crate::engine::slot::Slot;
 use crate::engine::transitions::Alarm;
 use crate::model::{Boundary, Commands, Dynamics, EventOf, Flight, MemoryOf, Model, SpinOf};
 use crate::particle::{Particle, ParticleId};
@@ -132,10 +132,19 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
             .sum()
     }
 
+    /// Diameters at `time` over those at t = 0.
+    pub(super) fn scale_at(&self, time: Time) -> f64 {
+        scale_at::<M, D>(&self.model, time)
+    }
+
     /// Lays the grid, and makes the lists, for where the grains are now.
     pub(super) fn lay_grid(&mut self) {
         let now = self.world.clock;
         let mut largest = self.world.largest * scale_at::<M, D>(&self.model, now);
+        if self.world.bodies.is_empty() {
+            // No grain, no length: any will do.
+            largest = 1.0;
+        }
         self.regrid_at = Time::NEVER;
         if M::Dynamics::GROWS {
             // Room to grow, so that this is rarely done.

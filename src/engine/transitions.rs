@@ -4,18 +4,14 @@ use std::cmp::Ordering;
 use std::cmp::Reverse;
 
 use crate::engine::queue::{Key, Rank};
-use crate::engine::search::{Partner, Slot};
 use crate::engine::simulation::Simulation;
+use crate::engine::slot::{Partner, Slot};
 use crate::engine::view::View;
 use crate::model::{
     Dynamics, EventOf, Flight, Model, Observer, Occurrence, OccurrenceKind, Reason, Response,
     StatePolicy, WakeCause, Waking,
 };
 use crate::particle::{Mode, ParticleId, Vector};
-use crate::time::Time;
-
-/// How long a bound on all speeds is kept before it is found anew, in √(d/g).
-const SPEED_WINDOW: f64 = 0.25;
 
 /// An event that the policy has asked for.
 #[derive(Clone, Copy, Debug)]
@@ -230,49 +226,5 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
             observer,
         );
         self.predict(particle);
-    }
-
-    /// Keeps the bound on all speeds true after a grain's velocity has changed.
-    pub(super) fn note_speed(&mut self, particle: u32) {
-        let speed = self
-            .world
-            .flight(&self.model, particle)
-            .speed_bound(SPEED_WINDOW);
-        self.speed_ceiling = self.speed_ceiling.max(speed);
-    }
-
-    /// No grain whose centre is farther away than this can touch `particle`
-    /// within a time.
-    pub(super) fn reach(&mut self, particle: u32, within: f64) -> f64 {
-        let now = self.world.clock;
-        if within > SPEED_WINDOW || now + within > self.ceiling_until {
-            let ahead = within.max(SPEED_WINDOW);
-            self.speed_ceiling = self.fastest(ahead);
-            self.ceiling_until = if within > SPEED_WINDOW {
-                // Too high for everyday use: find it anew next time.
-                now
-            } else {
-                now + ahead
-            };
-        }
-        let own = self.world.flight(&self.model, particle).speed_bound(within);
-        let grown = self.world.largest * self.scale_at(now + within);
-        grown + (own + self.speed_ceiling) * within
-    }
-
-    /// A bound on the speeds of all grains from now on for a while.
-    fn fastest(&self, within: f64) -> f64 {
-        let now = self.world.clock;
-        (0..self.world.bodies.len() as u32)
-            .map(|particle| {
-                let since = self.world.bodies[particle as usize].since;
-                let flight = self.world.flight(&self.model, particle);
-                flight.advanced(now - since).speed_bound(within)
-            })
-            .fold(0.0, f64::max)
-    }
-
-    pub(super) fn scale_at(&self, time: Time) -> f64 {
-        crate::engine::body::scale_at::<M, D>(&self.model, time)
     }
 }

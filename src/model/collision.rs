@@ -4,6 +4,7 @@ use std::fmt::Debug;
 
 use serde::{Serialize, de::DeserializeOwned};
 
+use crate::error::SetupError;
 use crate::model::Impact;
 use crate::particle::Vector;
 
@@ -40,4 +41,14 @@ pub trait CollisionRule<const D: usize> {
     /// a wall or a static grain ([`Impact::is_on_static`]); otherwise it answers
     /// with its own mass.
     fn collide(&self, impact: &Impact<D>, spins: Spins<'_, Self::Spin>) -> Rebound<D>;
+
+    /// Refuses parameters that are out of range; asked once, before a
+    /// simulation starts.
+    ///
+    /// # Errors
+    ///
+    /// [`SetupError`] with the parameter, its value and what is allowed.
+    fn validate(&self) -> Result<(), SetupError> {
+        Ok(())
+    }
 }

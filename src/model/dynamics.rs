@@ -1,5 +1,6 @@
 //! How grains fly between events.
 
+use crate::error::SetupError;
 use crate::particle::{Mode, ParticleId, Vector};
 use crate::time::Time;
 
@@ -68,6 +69,16 @@ pub trait Dynamics<const D: usize> {
     /// frozen grains have it, and thresholds are relative to it.
     fn ground_velocity(&self, _position: &Vector<D>, _time: Time) -> Vector<D> {
         Vector::zeros()
+    }
+
+    /// Refuses parameters that are out of range; asked once, before a
+    /// simulation starts.
+    ///
+    /// # Errors
+    ///
+    /// [`SetupError`] with the parameter, its value and what is allowed.
+    fn validate(&self) -> Result<(), SetupError> {
+        Ok(())
     }
 
     /// Growth of every diameter per unit of time, as a fraction of the

@@ -4,6 +4,7 @@ use std::fmt::Debug;
 
 use serde::{Deserialize, Serialize, de::DeserializeOwned};
 
+use crate::error::SetupError;
 use crate::model::{Impact, Surroundings};
 use crate::particle::{ParticleId, Vector};
 
@@ -191,6 +192,16 @@ pub trait StatePolicy<const D: usize> {
         near: &S,
         struck: &Self::Memory,
     ) -> WakeDecision<D>;
+
+    /// Refuses parameters that are out of range; asked once, before a
+    /// simulation starts.
+    ///
+    /// # Errors
+    ///
+    /// [`SetupError`] with the parameter, its value and what is allowed.
+    fn validate(&self) -> Result<(), SetupError> {
+        Ok(())
+    }
 
     /// Called once for each grain when the simulation starts, or when the grain
     /// is inserted.

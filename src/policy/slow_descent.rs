@@ -1,5 +1,6 @@
 use serde::{Deserialize, Serialize};
 
+use crate::error::SetupError;
 use crate::model::{
     Commands, Impact, Obstacle, Place, Reason, Response, SleepDecision, StatePolicy, Surroundings,
     WakeCause, WakeDecision, Waking,
@@ -226,6 +227,32 @@ impl<const D: usize> StatePolicy<D> for SlowDescent {
     type Memory = Remembered<D>;
     type Event = CheckDue;
 
+    fn validate(&self) -> Result<(), SetupError> {
+        let positive = [
+            ("sleep_speed", self.sleep_speed),
+            ("wake_speed", self.wake_speed),
+            ("store_time", self.store_time.unwrap_or(0.0)),
+        ];
+        for (field, value) in positive {
+            // NaN is refused, infinity is not.
+            if value.is_nan() || value < 0.0 {
+                return Err(SetupError::Parameter {
+                    field,
+                    value,
+                    allowed: "0 or more is allowed",
+                });
+            }
+        }
+        if !(0.0..=1.0).contains(&self.frozen_restitution) {
+            return Err(SetupError::Parameter {
+                field: "frozen_restitution",
+                value: self.frozen_restitution,
+                allowed: "0 … 1 is allowed",
+            });
+        }
+        self.self_check.as_ref().map_or(Ok(()), SelfCheck::validate)
+    }
+
     fn should_sleep<S: Surroundings<D>>(
         &self,
         impact: &Impact<D>,
@@ -241,6 +268,8 @@ impl<const D: usize> StatePolicy<D> for SlowDescent {
         };
         let on_support = self.is_on_support(impact);
         let previous = memory.previous_speed;
+        // A decision that this collision has cancelled.
+        memory.deciding = None;
         if on_support || self.comparison == Comparison::AnyCollision {
             memory.previous_speed = Some(speed);
         }

@@ -5,8 +5,9 @@ use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use serde::{Deserialize, Serialize};
 
+use crate::error::SetupError;
 use crate::model::{Reason, Surroundings};
-use crate::particle::ParticleId;
+use crate::particle::{Mode, ParticleId};
 use crate::time::Time;
 
 /// A wall within this gap below a grain supports it, in d.
@@ -59,6 +60,25 @@ impl Default for SelfCheck {
 }
 
 impl SelfCheck {
+    pub(super) fn validate(&self) -> Result<(), SetupError> {
+        // Shorter intervals would check without end at one instant.
+        if !(self.interval >= 1.0e-9 && self.interval.is_finite()) {
+            return Err(SetupError::Parameter {
+                field: "self_check.interval",
+                value: self.interval,
+                allowed: "1e-9 or more is allowed",
+            });
+        }
+        if !(1.0..=10.0).contains(&self.support_range) {
+            return Err(SetupError::Parameter {
+                field: "self_check.support_range",
+                value: self.support_range,
+                allowed: "1 … 10 is allowed",
+            });
+        }
+        Ok(())
+    }
+
     /// How long until the first check of a grain that starts frozen.
     pub(super) fn first_wait(&self, id: ParticleId, now: Time) -> f64 {
         match self.phase {
@@ -142,7 +162,7 @@ impl Supports {
                 if lower > 0.0 {
                     below.push(other.id);
                 }
-            } else if check.support_normals && lower < 0.0 {
+            } else if check.support_normals && other.mode == Mode::Normal && lower < 0.0 {
                 above.push(other.id);
             }
         });

@@ -1,0 +1,110 @@
+//! How long until a grain's next collision, for those that fall asleep half-way
+//! to it.
+//!
+//! Prediction notes only what it has to; here everybody counts, and as far
+//! ahead as it takes. A bound on all speeds says when nobody else can come
+//! first.
+
+use crate::engine::cells::Found;
+use crate::engine::simulation::Simulation;
+use crate::model::{Boundary, Flight, Model};
+use crate::particle::WallId;
+use crate::time::Time;
+
+/// How long a bound on all speeds is kept before it is found anew, in √(d/g).
+const SPEED_WINDOW: f64 = 0.25;
+
+impl<M: Model<D>, const D: usize> Simulation<M, D> {
+    /// How long until a grain's next collision if everyone flies on as now.
+    pub(super) fn next_collision(&mut self, particle: u32) -> Option<f64> {
+        let start = self.world.clock;
+        let horizon = start + self.settings.sleep_horizon;
+        let horizon = horizon.min(Time::LAST);
+        let mut first = horizon;
+        let mut any = false;
+        for wall in 0..self.model.boundary().walls().len() {
+            if let Some(time) = self.wall_contact(particle, WallId(wall as u16), first) {
+                first = time;
+                any = true;
+            }
+        }
+        let mut found = std::mem::take(&mut self.scratch);
+        found.clear();
+        found.extend_from_slice(self.world.near.list(particle));
+        let mut looked = None;
+        loop {
+            for other in &found {
+                if let Some(time) = self.pair_contact(particle, other.particle, other.turns, first)
+                {
+                    first = time;
+                    any = true;
+                }
+            }
+            // Nobody whose surface is farther away than this comes first.
+            let nearing = self.nearing(particle, first - start);
+            let Some(distance) = looked else {
+                // Who is not on the list is off by what is left of the leash.
+                let position = self.world.bodies[particle as usize].position;
+                if any && nearing <= self.world.near.slack(particle, &position) {
+                    break;
+                }
+                looked = Some(1.5 * self.world.largest);
+                self.find_within(particle, 1.5 * self.world.largest, &mut found);
+                continue;
+            };
+            let reach = self.world.largest * self.scale_at(first) + nearing;
+            if reach <= distance || self.world.near.is_everything(particle, distance) {
+                break;
+            }
+            looked = Some(reach);
+            self.find_within(particle, reach, &mut found);
+        }
+        self.scratch = found;
+        any.then_some(first - start)
+    }
+
+    fn find_within(&self, particle: u32, distance: f64, found: &mut Vec<Found<D>>) {
+        found.clear();
+        self.world
+            .near
+            .for_each_within(particle, distance, |other| found.push(other));
+    }
+
+    /// Keeps the bound on all speeds true after a grain's velocity has changed.
+    pub(super) fn note_speed(&mut self, particle: u32) {
+        let speed = self
+            .world
+            .flight(&self.model, particle)
+            .speed_bound(SPEED_WINDOW);
+        self.speed_ceiling = self.speed_ceiling.max(speed);
+    }
+
+    /// How much nearer, in d, any grain can come to `particle` within a time.
+    fn nearing(&mut self, particle: u32, within: f64) -> f64 {
+        let now = self.world.clock;
+        if within > SPEED_WINDOW || now + within > self.ceiling_until {
+            let ahead = within.max(SPEED_WINDOW);
+            self.speed_ceiling = self.fastest(ahead);
+            self.ceiling_until = if within > SPEED_WINDOW {
+                // Too high for everyday use: find it anew next time.
+                now
+            } else {
+                now + ahead
+            };
+        }
+        let own = self.world.flight(&self.model, particle).speed_bound(within);
+        (own + self.speed_ceiling) * within
+    }
+
+    /// A bound on the speeds of all grains from now on for a while.
+    fn fastest(&self, within: f64) -> f64 {
+        let now = self.world.clock;
+        (0..self.world.bodies.len() as u32)
+            .map(|particle| {
+                let since = self.world.bodies[particle as usize].since;
+                let flight = self.world.flight(&self.model, particle);
+                flight.advanced(now - since).speed_bound(within)
+            })
+            .fold(0.0, f64::max)
+    }
+}
