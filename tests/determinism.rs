@@ -22,7 +22,7 @@ fn a_deposition_in_space() {
     let mut simulation = Simulation::new(model, rain_on_base::<3>(1, 120, 5.0, EQUAL)).unwrap();
     let found = hash(&mut simulation, &Limits::all_frozen());
     assert_eq!(simulation.mode_counts().frozen, 120);
-    assert_eq!(format!("{found:016x}"), "d1cd5b8fb1d57c04"));
+    assert_eq!(format!("{found:016x}"), "d1cd5b8fb1d57c04");
 }
 
 #[test]
@@ -40,7 +40,7 @@ fn a_checked_heap_of_all_sizes_in_the_plane() {
     let mut simulation = Simulation::new(model, rain_on_base::<2>(2, 60, 12.0, sizes)).unwrap();
     let found = hash(&mut simulation, &Limits::events(60_000));
     assert!(simulation.counts().check > 100);
-    assert_eq!(format!("{found:016x}"), "8d9daead6e9a66db"));
+    assert_eq!(format!("{found:016x}"), "8d9daead6e9a66db");
 }
 
 #[test]
@@ -53,5 +53,5 @@ fn a_gas_that_cools() {
             &Limits::events(20_000),
         )
     };
-    assert_eq!(format!("{found:016x}"), "e82c7a85c2abf60a"));
+    assert_eq!(format!("{found:016x}"), "e82c7a85c2abf60a");
 }
