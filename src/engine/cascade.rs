@@ -19,6 +19,13 @@ const CONFINED: u32 = 4096;
 /// away: the grain in it cannot move farther than about that.
 const CAGE: f64 = 1.0e-8;
 
+/// Collisions that follow each other in less than this part of the exit speed
+/// over gravity are too many: a free grain needs twice the whole to come back.
+const HURRY: f64 = 0.1;
+
+/// A grain is held if its contacts leave less than this part of its weight.
+const HELD: f64 = 1.0e-3;
+
 /// A cluster of grains that touch is not followed beyond this many.
 const MOST_MEMBERS: usize = 12;
 
@@ -63,17 +70,13 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
         if guards.collapse.is_some_and(|limit| run >= limit) && self.collapse.is_none() {
             self.collapse = Some(self.name_collapse(particle, run));
         }
-        let confined = self.traces[particle as usize].confined;
         let sleeps = M::StatePolicy::SLEEPS;
-        if sleeps && guards.cascade.is_some() && confined > 0 && confined.is_multiple_of(CONFINED) {
-            let caught = self.is_caged(particle);
-            self.counts.guard += u64::from(caught);
-            if caught {
-                return Relief {
-                    caught,
-                    ..Relief::none()
-                };
-            }
+        if sleeps && guards.cascade.is_some() && self.is_caught(particle) {
+            self.counts.guard += 1;
+            return Relief {
+                caught: true,
+                ..Relief::none()
+            };
         }
         let due = |limit: u32| run >= limit && run.is_multiple_of(limit);
         if !guards.cascade.is_some_and(due) {
@@ -129,14 +132,29 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
         Relief { caught, disturbed }
     }
 
-    /// Whether static obstacles all but touch a grain on so many sides that no
-    /// velocity leads away from all of them.
-    fn is_caged(&self, particle: u32) -> bool {
+    /// Whether a grain is caught between static obstacles that all but touch it:
+    /// on so many sides that no velocity leads away from all of them, or so
+    /// that they hold its weight while it rattles between them far faster than
+    /// a grain that leaves at the exit speed.
+    fn is_caught(&mut self, particle: u32) -> bool {
+        let now = self.world.clock;
+        let exit = self.settings.guards.exit_speed;
+        let trace = &mut self.traces[particle as usize];
+        if trace.confined == 0 || !trace.confined.is_multiple_of(CONFINED) || exit == 0.0 {
+            return false;
+        }
+        let lasted = now - trace.confined_since;
+        trace.confined_since = now;
         let velocity = self.world.particle_now(&self.model, particle).velocity;
         let mut bars = Vec::new();
         self.for_each_static(particle, CAGE, |touch, _| bars.push(touch));
-        let exit = self.settings.guards.exit_speed;
-        exit > 0.0 && project(&[velocity], &bars, exit).is_none()
+        if project(&[velocity], &bars, exit).is_none() {
+            return true;
+        }
+        let gravity = self.model.dynamics().gravity(now);
+        let hurried = lasted * gravity.norm() < HURRY * exit * f64::from(CONFINED);
+        let held = |fall: Vec<Vector<D>>| fall[0].norm() < HELD * gravity.norm();
+        hurried && project(&[gravity], &bars, 0.0).is_some_and(held)
     }
 
     fn name_collapse(&self, particle: u32, run: u32) -> Collapse {

@@ -26,6 +26,8 @@ pub(super) struct Trace {
     pub(super) last: Time,
     /// Collisions with static grains and walls since it last met a mobile one.
     pub(super) confined: u32,
+    /// When the last lot of them began.
+    pub(super) confined_since: Time,
 }
 
 /// Static partners that a grain may not meet again before a time.
@@ -66,6 +68,7 @@ impl Traces {
             run: 0,
             last: Time::NEVER,
             confined: 0,
+            confined_since: Time::NEVER,
         });
         if self.hold > 0.0 {
             self.holds.push(Holds::NONE);
@@ -92,6 +95,9 @@ impl Traces {
         } else {
             0
         };
+        if trace.confined <= 1 {
+            trace.confined_since = now;
+        }
         let at_once = trace.last.is_finite() && now - trace.last < INSTANT;
         trace.run = if at_once {
             trace.run.saturating_add(1)
