@@ -2,7 +2,8 @@
 //!
 //! `cargo test` checks them in the test profile, with assertions;
 //! `cargo test --release --test determinism` as users run them, and with
-//! `CARGO_PROFILE_TEST_OPT_LEVEL=0` set, without any optimisation. A hash moves
+//! `CARGO_PROFILE_TEST_OPT_LEVEL=0` set, those named `pinned` without any
+//! optimisation. A hash moves
 //! only when the physics does, or the last bit of its arithmetic: never with
 //! the neighbour scheme, the queue, the clock, or the build.
 
@@ -51,7 +52,7 @@ fn text(hash: u64) -> String {
 }
 
 #[test]
-fn a_deposition_in_space() {
+fn pinned_deposition_in_space() {
     let (model, grains) = deposition();
     let mut simulation = Simulation::new(model, grains).unwrap();
     let found = hash(&mut simulation, &Limits::all_frozen());
@@ -60,7 +61,7 @@ fn a_deposition_in_space() {
 }
 
 #[test]
-fn a_checked_heap_of_all_sizes_in_the_plane() {
+fn pinned_heap_of_all_sizes_in_the_plane() {
     let (model, grains) = heap();
     let mut simulation = Simulation::new(model, grains).unwrap();
     let found = hash(&mut simulation, &Limits::events(HEAP_EVENTS));
@@ -69,7 +70,7 @@ fn a_checked_heap_of_all_sizes_in_the_plane() {
 }
 
 #[test]
-fn a_gas_that_cools() {
+fn pinned_gas_that_cools() {
     let (grains, sides) = gas_grains::<3>(3, 200, 0.2, EQUAL);
     let model = free(Restitution::constant(0.9), sides);
     let mut simulation = Simulation::new(model, grains).unwrap();
