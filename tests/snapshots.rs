@@ -84,23 +84,32 @@ fn bounce() {
     ");
 }
 
-/// Fig. 2: two grains wedged between two frozen ones.
-#[test]
-fn arch() {
+/// Fig. 2: two grains wedged between two frozen ones; and the mirror image.
+fn arch_of(mirror: f64) -> Vec<Occurrence<2>> {
     let policy = SlowDescent {
         wake_speed: 0.5,
         ..SlowDescent::with_threshold(0.05)
     };
     let model = heavy(rule(1.0e-4), policy, [Side::Open, Side::Open]);
-    let at = |x: f64, y: f64| Vector::<2>::new(x, y);
-    let grains = vec![
+    let at = |x: f64, y: f64| Vector::<2>::new(mirror * x, y);
+    let mut grains = vec![
         Particle::frozen(at(-1.296875, 0.0)),
         Particle::new(at(-0.5205078125, 0.6640625), Vector::zeros()),
         Particle::new(at(0.5234375, 0.66015625), Vector::zeros()),
         Particle::frozen(at(1.296875, 0.0)),
     ];
+    if mirror < 0.0 {
+        grains.reverse();
+    }
     let mut simulation = Simulation::new(model, grains).unwrap();
-    let (_, events) = watch(&mut simulation, &Limits::all_frozen());
+    let (why, events) = watch(&mut simulation, &Limits::all_frozen());
+    assert_eq!(why, StopReason::AllFrozen);
+    events
+}
+
+#[test]
+fn arch() {
+    let events = arch_of(1.0);
     insta::assert_snapshot!(table(&events), @r"
     0.229276 frozen 2 on 3      at 0.145332, leaves with 0.186616
     0.259929 frozen 1 on 0      at 0.163828, leaves with 0.212174
@@ -127,6 +136,21 @@ fn arch() {
     0.553865 frozen 2 on 3      at 0.005967, leaves with 0.007628
     0.556029 sleep  2           at 0.000000, leaves with 0.000000
     ");
+
+    // The other way round it is the other one that sleeps first: each takes the
+    // other's part, at the same instants.
+    let mirrored = arch_of(-1.0);
+    assert_eq!(events.len(), mirrored.len());
+    for (one, two) in events.iter().zip(&mirrored) {
+        assert_eq!((one.kind, one.time), (two.kind, two.time));
+        let names = |event: &Occurrence<2>, name: fn(u32) -> u32| {
+            let mut names = vec![name(event.particle.0)];
+            names.extend(event.other.map(|id| name(id.0)));
+            names.sort_unstable();
+            names
+        };
+        assert_eq!(names(one, |id| id), names(two, |id| 3 - id));
+    }
 }
 
 #[test]

@@ -1,0 +1,184 @@
+//! Guards against endless cascades, and how a run without them ends.
+
+mod common;
+
+use common::{deposition, gas, hash, heavy, rain_on_base, rule, until};
+use grainfall::boundary::Side;
+use grainfall::collide::Restitution;
+use grainfall::engine::{Guards, Limits, Settings, Simulation, StopReason};
+use grainfall::model::Model;
+use grainfall::policy::{Never, SlowDescent};
+use grainfall::setup::Sizes;
+use grainfall::{Particle, ParticleId, SetupError, Time, Vector};
+
+fn with(guards: Guards) -> Settings {
+    Settings {
+        guards,
+        ..Settings::default()
+    }
+}
+
+/// A grain, 2, that drops 0.1 d into the notch between two fixed ones, 0 and 1,
+/// at ± `half`, so far `off` the middle, with a constant restitution: bounces
+/// without end in a finite time. 3 is fixed, near, and out of it.
+fn notch(half: f64, off: f64, guards: Guards) -> Simulation<impl Model<2>, 2> {
+    let bottom = f64::sqrt(1.0 - half * half);
+    let grains = vec![
+        Particle::fixed(Vector::<2>::new(-half, 0.0)),
+        Particle::fixed(Vector::<2>::new(half, 0.0)),
+        Particle::new(Vector::<2>::new(off, bottom + 0.1), Vector::zeros()),
+        Particle::fixed(Vector::<2>::new(1.3, 1.1)),
+    ];
+    let model = heavy(rule(0.0), Never, [Side::Open; 2]);
+    Simulation::with_settings(model, grains, with(guards)).unwrap()
+}
+
+#[test]
+fn without_guards_a_grain_in_a_notch_collapses_and_is_named() {
+    let limit = 5000;
+    let guards = Guards {
+        collapse: Some(limit),
+        ..Guards::none()
+    };
+    // In a steep notch it is thrown from one to the other; in a flat one it comes
+    // to an end on one of them, sliding.
+    for (half, wanted) in [(0.97, vec![0, 1]), (0.6, vec![0])] {
+        let mut simulation = notch(half, 0.01, guards);
+        let StopReason::Collapse(collapse) = simulation.run(&until(20.0), &mut ()) else {
+            panic!("no collapse")
+        };
+        assert_eq!(collapse.particles[0], ParticleId(2), "who collides");
+        let mut touched: Vec<u32> = collapse.particles[1..].iter().map(|id| id.0).collect();
+        touched.sort_unstable();
+        assert_eq!(touched, wanted, "whom it touches");
+        assert_eq!(collapse.collisions, u64::from(limit));
+        assert_eq!(collapse.time, simulation.time());
+        assert!(simulation.time() < Time::from_units(5.0));
+        assert_eq!(simulation.counts().guard, 0);
+        // There is no gap left, and no speed along the normal.
+        let there = simulation.particle(ParticleId(2));
+        for other in wanted {
+            let apart = there.position - simulation.particle(ParticleId(other)).position;
+            assert!((apart.norm() - 1.0).abs() < 1.0e-12);
+            assert!(apart.dot(&there.velocity).abs() < 1.0e-12);
+        }
+
+        // Not looked for, it goes on for as long as it is let.
+        let blind = Guards {
+            collapse: None,
+            ..Guards::none()
+        };
+        let more = Limits::events(2 * simulation.counts().total());
+        let why = notch(half, 0.01, blind).run(&more, &mut ());
+        assert_eq!(why, StopReason::Events);
+    }
+}
+
+#[test]
+fn with_guards_it_goes_on() {
+    for guards in [Guards::default(), Guards::floor_and_hold(1.0e-5, 1.0e-9)] {
+        let mut simulation = notch(0.97, 0.01, guards);
+        let collapsed = 2.5;
+        let limits = Limits {
+            events: 200_000,
+            ..until(collapsed)
+        };
+        let why = simulation.run(&limits, &mut ());
+        assert!(matches!(why, StopReason::Time | StopReason::Events));
+        assert!(simulation.counts().guard > 10);
+        let overlap = simulation.max_overlap();
+        assert!(overlap < 1.0e-9, "overlap {overlap:e} with {guards:?}");
+        let there = simulation.particle(ParticleId(2));
+        assert!(
+            (there.position - Vector::<2>::new(0.0, f64::sqrt(1.0 - 0.97 * 0.97))).norm() < 1.0e-6
+        );
+        assert!(there.velocity.norm() < 1.0e-3);
+    }
+}
+
+/// The hash of a run with and without guards, none of which acts in it.
+fn is_untouched<M: Model<D>, const D: usize>(
+    name: &str,
+    limits: Limits,
+    make: impl Fn(Guards) -> Simulation<M, D>,
+) {
+    let mut guarded = make(Guards::default());
+    let one = hash(&mut guarded, &limits);
+    assert_eq!(guarded.counts().guard, 0, "{name} is to need no guard");
+    assert!(guarded.counts().total() > 1000);
+    let two = hash(&mut make(Guards::none()), &limits);
+    assert_eq!(one, two, "{name}");
+}
+
+#[test]
+fn guards_that_do_not_act_leave_no_trace() {
+    is_untouched("a rain's first contacts", until(7.0), |guards| {
+        let grains = rain_on_base::<3>(2, 60, 4.0, Sizes::default());
+        let sides = common::periodic_laterally(4.0);
+        let model = heavy(rule(1.0e-3), SlowDescent::default(), sides);
+        Simulation::with_settings(model, grains, with(guards)).unwrap()
+    });
+    is_untouched("a gas", Limits::events(5000), |guards| {
+        let made = gas::<2>(3, 100, 0.5, Restitution::constant(0.95));
+        let (model, grains) = (made.model().clone(), made.snapshot());
+        Simulation::with_settings(model, grains, with(guards)).unwrap()
+    });
+}
+
+#[test]
+fn in_a_heap_overlaps_stay_at_rounding() {
+    let mut simulation = deposition::<2>(5, 80, 12.0, Sizes::default());
+    let why = simulation.run(&Limits::all_frozen(), &mut ());
+    assert_eq!(why, StopReason::AllFrozen);
+    assert!(simulation.counts().guard > 0);
+    assert!(simulation.max_overlap() < 1.0e-9);
+}
+
+#[test]
+fn settings_out_of_range_are_refused() {
+    let good = Guards::default();
+    for (guards, wanted) in [
+        (
+            Guards {
+                cascade: Some(0),
+                ..good
+            },
+            "guards.cascade",
+        ),
+        (
+            Guards {
+                collapse: Some(0),
+                ..good
+            },
+            "guards.collapse",
+        ),
+        (
+            Guards {
+                exit_speed: -1.0,
+                ..good
+            },
+            "guards.exit_speed",
+        ),
+        (
+            Guards {
+                floor_speed: f64::NAN,
+                ..good
+            },
+            "guards.floor_speed",
+        ),
+        (
+            Guards {
+                hold: f64::INFINITY,
+                ..good
+            },
+            "guards.hold",
+        ),
+    ] {
+        let model = heavy(rule(0.0), Never, [Side::Open; 2]);
+        let refused = Simulation::with_settings(model, vec![], with(guards));
+        let Err(SetupError::Parameter { field, .. }) = refused.map(|_| ()) else {
+            panic!("{wanted} was let through")
+        };
+        assert_eq!(field, wanted);
+    }
+}
