@@ -59,7 +59,9 @@ pub enum Mode {
     Falling,
     /// Asleep: at rest until it is hit hard enough or loses its support.
     Frozen,
-    /// Never wakes: at rest, or on the path that the dynamics prescribes.
+    /// Never wakes: at rest, or on the path that the dynamics prescribes. Static
+    /// grains do not collide with each other: one that moves passes through
+    /// frozen ones, unless these are carried along with it.
     Fixed,
 }
 

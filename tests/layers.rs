@@ -49,6 +49,10 @@ fn imports_point_one_way() {
     let mut wrong = Vec::new();
     for file in files {
         let inside = file.strip_prefix(&root).unwrap();
+        // The audit is a test: it puts whole models together.
+        if inside.starts_with("engine/audit") || inside.ends_with("engine/audit.rs") {
+            continue;
+        }
         let first = inside.components().next().unwrap();
         let room = Path::new(first.as_os_str())
             .file_stem()

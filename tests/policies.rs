@@ -285,6 +285,42 @@ fn a_sleeper_that_is_woken_soon_gets_its_velocity_back() {
     close(given[1], up - 0.85 * (0.5 + up), 1.0e-9, "down");
 }
 
+/// A missile at a height that meets the hopper, asleep at `place` since
+/// `asleep`, from the side, a time after.
+fn from_the_side(place: &Particle<2>, asleep: f64, wait: f64, speed: f64) -> Particle<2> {
+    let [x, y] = [place.position[0], place.position[1]];
+    missile(x - speed.signum() - speed * (asleep + wait), y, speed, 0.0)
+}
+
+#[test]
+fn the_woken_compares_with_its_speed_before_the_hit() {
+    // Given back its 0.05, and stopped by a hit from ahead, it comes down slower
+    // than that: at its first contact it falls asleep again.
+    let policy = SlowDescent {
+        sleep_speed: 0.08,
+        wake_speed: 0.02,
+        ..SlowDescent::default()
+    };
+    let (asleep, place) = hopper(policy);
+    for (store, sleeps) in [
+        (EnergyStore::VelocityBefore, true),
+        (EnergyStore::Off, false),
+    ] {
+        let policy = SlowDescent {
+            energy_store: store,
+            ..policy
+        };
+        let ahead = from_the_side(&place, asleep, 0.1, -0.03);
+        let mut simulation = on_a_floor(policy, vec![grain(0.0, 0.52, DRIFT, 0.0), ahead]);
+        let (_, events) = watch(&mut simulation, &until(asleep + 0.5));
+        let hit = events.iter().position(|event| event.kind == Kind::Wake);
+        let landed = |event: &&Occurrence<2>| event.kind == Kind::Wall && event.particle.0 == 0;
+        let landing = events[hit.unwrap()..].iter().find(landed).unwrap();
+        assert!(landing.impact_speed < 0.02);
+        assert_eq!(landing.reason.is_some(), sleeps, "{store:?}");
+    }
+}
+
 #[test]
 fn without_a_collision_left_the_woken_just_goes() {
     // Struck from behind at 0.04, it gets back its 0.05 and is off.
@@ -294,9 +330,8 @@ fn without_a_collision_left_the_woken_just_goes() {
         ..SlowDescent::default()
     };
     let (asleep, place) = hopper(policy);
-    let [x, y] = [place.position[0], place.position[1]];
     let (wait, speed) = (0.2, 0.04);
-    let behind = missile(x - 1.0 - speed * (asleep + wait), y, speed, 0.0);
+    let behind = from_the_side(&place, asleep, wait, speed);
     let mut simulation = on_a_floor(policy, vec![grain(0.0, 0.52, DRIFT, 0.0), behind]);
     let (_, events) = watch(&mut simulation, &until(asleep + 1.01 * wait));
     let event = of_kind(&events, Kind::Wake)[0];

@@ -78,7 +78,11 @@ fn every_neighbour_is_shown_once() {
     // From boxes a little wider than two grains, where each has its neighbours
     // on both sides, to wide ones.
     for (width, range) in [(2.1, 1.1), (3.0, 1.4), (4.3, 1.5), (5.0, 1.5), (9.0, 2.5)] {
-        let sides = [Side::periodic(width), Side::periodic(4.0), Side::Open];
+        let sides = [
+            Side::periodic(width),
+            Side::periodic(4.0),
+            Side::floor(-0.5, 0.4),
+        ];
         let bed = Particle::fixed(Vector::<3>::zeros());
         let mut grains = vec![bed];
         for layer in 0..6 {

@@ -4,7 +4,7 @@ use crate::engine::projection::{Member, Touch, project};
 use crate::engine::settings::Collapse;
 use crate::engine::simulation::Simulation;
 use crate::engine::slot::Partner;
-use crate::model::{Boundary, Dynamics, Model, Wall};
+use crate::model::{Boundary, Dynamics, Model, StatePolicy, Wall};
 use crate::particle::{Mode, Particle, ParticleId, Vector};
 
 /// Difference of squared distances up to which two surfaces count as touching,
@@ -31,40 +31,57 @@ struct Cluster<const D: usize> {
 }
 
 /// What the guard did.
-#[derive(Debug, Default)]
-pub(super) struct Relief {
+#[derive(Debug)]
+pub(super) struct Relief<const D: usize> {
     /// The grain is caught between static ones and has to sleep where it is.
     pub(super) caught: bool,
-    /// Grains whose velocities were changed, and who have to be predicted anew.
-    pub(super) disturbed: Vec<u32>,
+    /// Grains whose velocities were changed, and who have to be predicted anew,
+    /// with the change, in √(gd).
+    pub(super) disturbed: Vec<(u32, Vector<D>)>,
+}
+
+impl<const D: usize> Relief<D> {
+    /// Nothing.
+    pub(super) fn none() -> Self {
+        Relief {
+            caught: false,
+            disturbed: Vec::new(),
+        }
+    }
+
+    /// Whether the velocity of a grain was changed.
+    pub(super) fn disturbs(&self, particle: u32) -> bool {
+        self.disturbed.iter().any(|(other, _)| *other == particle)
+    }
 }
 
 impl<M: Model<D>, const D: usize> Simulation<M, D> {
     /// Ends a cascade of a grain that has made `run` collisions at this instant,
     /// or finds that it has collapsed.
-    pub(super) fn end_cascade(&mut self, particle: u32, run: u32) -> Relief {
+    pub(super) fn end_cascade(&mut self, particle: u32, run: u32) -> Relief<D> {
         let guards = self.settings.guards;
         if guards.collapse.is_some_and(|limit| run >= limit) && self.collapse.is_none() {
             self.collapse = Some(self.name_collapse(particle, run));
         }
         let confined = self.traces[particle as usize].confined;
-        if guards.cascade.is_some() && confined > 0 && confined.is_multiple_of(CONFINED) {
+        let sleeps = M::StatePolicy::SLEEPS;
+        if sleeps && guards.cascade.is_some() && confined > 0 && confined.is_multiple_of(CONFINED) {
             let caught = self.is_caged(particle);
             self.counts.guard += u64::from(caught);
             if caught {
                 return Relief {
                     caught,
-                    disturbed: Vec::new(),
+                    ..Relief::none()
                 };
             }
         }
         let due = |limit: u32| run >= limit && run.is_multiple_of(limit);
         if !guards.cascade.is_some_and(due) {
-            return Relief::default();
+            return Relief::none();
         }
         let cluster = self.cluster(particle);
         if cluster.touches.is_empty() {
-            return Relief::default();
+            return Relief::none();
         }
         self.counts.guard += 1;
         let before: Vec<Vector<D>> = cluster
@@ -73,7 +90,7 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
             .map(|&member| self.world.particle_now(&self.model, member).velocity)
             .collect();
         let Some(resting) = project(&before, &cluster.touches, 0.0) else {
-            return Relief::default();
+            return Relief::none();
         };
         // In a narrow cone a small exit speed along the normals is a large one
         // along the axis.
@@ -92,10 +109,10 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
             }
         }
         // Where contacts work against each other some grain cannot leave.
-        let caught = leaving.is_none() && resting[0].norm() <= most;
+        let caught = sleeps && leaving.is_none() && resting[0].norm() <= most;
         let after = leaving.unwrap_or(resting);
         let mut disturbed = Vec::new();
-        for (&member, velocity) in cluster.members.iter().zip(after) {
+        for ((&member, velocity), was) in cluster.members.iter().zip(after).zip(before) {
             let body = &mut self.world.bodies[member as usize];
             if body.since == self.world.clock {
                 body.velocity = velocity;
@@ -107,7 +124,7 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
             self.traces[member as usize].partner = Partner::Nobody;
             self.slots[member as usize].sleep = crate::time::Time::NEVER;
             self.note_speed(member);
-            disturbed.push(member);
+            disturbed.push((member, velocity - was));
         }
         Relief { caught, disturbed }
     }

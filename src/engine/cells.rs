@@ -136,6 +136,19 @@ impl<const D: usize> Cells<D> {
         })
     }
 
+    /// How far a position lies outside the grid, in d, along axes that are not
+    /// periodic.
+    pub(super) fn outside(&self, position: &Vector<D>) -> f64 {
+        let mut farthest: f64 = 0.0;
+        for (axis, x) in self.axes.iter().zip(position.iter()) {
+            if axis.period.is_none() {
+                let high = axis.origin + f64::from(axis.count) * axis.edge;
+                farthest = farthest.max(axis.origin - x).max(x - high);
+            }
+        }
+        farthest
+    }
+
     /// Unseats the grain that was seated last.
     pub(super) fn forget_last(&mut self) {
         if let Some(last) = self.seats.len().checked_sub(1) {
@@ -154,10 +167,10 @@ impl<const D: usize> Cells<D> {
 
     /// The most rings of cells that are worth a look: beyond, everybody has
     /// been seen, and in all images within a period and the edge of a cell.
-    /// (One ring less would not do in a period of two diameters, which is a
-    /// single cell.)
+    /// (Twice as many rings as cells, for the edges of a periodic axis may be
+    /// almost twice as long as the shortest.)
     pub(super) fn rings(&self) -> i32 {
-        self.axes.iter().map(|axis| axis.count).max().unwrap_or(1) + 1
+        2 * self.axes.iter().map(|axis| axis.count).max().unwrap_or(1) + 1
     }
 
     /// Files a grain under the cell of another position.

@@ -113,8 +113,8 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
             self.tell_woken(b, &cause);
         }
         let relief = self.end_cascade(a, run);
-        let mut relief_other = Relief::default();
-        if two_mobile && !relief.disturbed.contains(&b) {
+        let mut relief_other = Relief::none();
+        if two_mobile && !relief.disturbs(b) {
             relief_other = self.end_cascade(b, run_other);
         }
 
@@ -145,11 +145,8 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
         if two_mobile {
             self.predict(b);
         }
-        for &other in relief.disturbed.iter().chain(&relief_other.disturbed) {
-            if other != a && other != b {
-                self.predict(other);
-            }
-        }
+        self.tell_disturbed(&relief, [a, b], observer);
+        self.tell_disturbed(&relief_other, [a, b], observer);
         self.begin_sleep(a, sleep, relief.caught, observer);
         if two_mobile {
             self.begin_sleep(b, sleep_other, relief_other.caught, observer);
@@ -205,11 +202,7 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
             observer,
         );
         self.predict(particle);
-        for &other in &relief.disturbed {
-            if other != particle {
-                self.predict(other);
-            }
-        }
+        self.tell_disturbed(&relief, [particle; 2], observer);
         self.begin_sleep(particle, sleep, relief.caught, observer);
     }
 
@@ -313,6 +306,38 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
         self.slots[particle as usize] = Slot::EMPTY;
         self.tie_if_moving(particle);
         self.note_speed(particle);
+    }
+
+    /// Reports, and predicts anew, the grains that the end of a cascade has
+    /// disturbed, but for those that have just collided.
+    fn tell_disturbed<O: Observer<D>>(
+        &mut self,
+        relief: &Relief<D>,
+        collided: [u32; 2],
+        observer: &mut O,
+    ) {
+        for &(particle, change) in &relief.disturbed {
+            if collided.contains(&particle) {
+                continue;
+            }
+            self.report(
+                &Occurrence {
+                    time: self.world.clock,
+                    kind: OccurrenceKind::Guard,
+                    particle: ParticleId(particle),
+                    other: None,
+                    wall: None,
+                    impact_speed: 0.0,
+                    impulse: change * self.world.masses[particle as usize],
+                    velocity: self.world.bodies[particle as usize].velocity,
+                    other_velocity: Vector::zeros(),
+                    elastic: false,
+                    reason: None,
+                },
+                observer,
+            );
+            self.predict(particle);
+        }
     }
 
     pub(super) fn report<O: Observer<D>>(&self, occurrence: &Occurrence<D>, observer: &mut O) {

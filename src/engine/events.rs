@@ -7,12 +7,13 @@ use crate::engine::settings::{Limits, StopReason};
 use crate::engine::simulation::Simulation;
 use crate::engine::slot::Partner;
 use crate::model::{Flight, Model, Observer};
+use crate::particle::ParticleId;
 use crate::time::Time;
 
 impl<M: Model<D>, const D: usize> Simulation<M, D> {
     /// Carries out events until a limit is reached, and says which.
     ///
-    /// A run can go on after any stop but a collapse; where it stopped leaves no
+    /// A run can go on after any stop but a collapse or an escape; where it stopped leaves no
     /// trace in the trajectory. Whoever watches is shown each physical event
     /// just after it has happened. If nothing lies ahead the clock shows the
     /// time limit; if everything is frozen, the last event.
@@ -20,6 +21,9 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
         loop {
             if let Some(collapse) = &self.collapse {
                 return StopReason::Collapse(collapse.clone());
+            }
+            if let Some(particle) = self.escaped {
+                return StopReason::Escaped(particle);
             }
             if limits.all_frozen && self.world.modes.mobile() == 0 {
                 return StopReason::AllFrozen;
@@ -103,6 +107,9 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
         let position = flight.position(self.world.clock - since);
         let slack = self.world.near.slack(particle, &position);
         if self.world.near.is_stretched(particle, slack) {
+            if self.world.near.is_lost(&position) {
+                self.escaped = Some(ParticleId(particle));
+            }
             self.counts.transfer += 1;
             self.tie(particle);
             self.predict_listed(particle);

@@ -31,9 +31,13 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
         let mut found = std::mem::take(&mut self.scratch);
         found.clear();
         found.extend_from_slice(self.world.near.list(particle));
+        let farthest = self.shortest_period();
         let mut looked = None;
         loop {
             for other in &found {
+                if self.distance_to(particle, other) > farthest {
+                    continue;
+                }
                 if let Some(time) = self.pair_contact(particle, other.particle, other.turns, first)
                 {
                     first = time;
@@ -52,7 +56,7 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
                 self.find_within(particle, 1.5 * self.world.largest, &mut found);
                 continue;
             };
-            let reach = self.world.largest * self.scale_at(first) + nearing;
+            let reach = farthest.min(self.world.largest * self.scale_at(first) + nearing);
             if reach <= distance || self.world.near.is_everything(particle, distance) {
                 break;
             }
@@ -61,6 +65,30 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
         }
         self.scratch = found;
         any.then_some(first - start)
+    }
+
+    /// Beyond the shortest period, images are not looked for: the limit is one
+    /// of the model, so that it does not depend on the grid.
+    fn shortest_period(&self) -> f64 {
+        (0..D)
+            .filter_map(|axis| self.model.boundary().period(axis))
+            .map(|period| period.length)
+            .fold(f64::INFINITY, f64::min)
+    }
+
+    /// How far away another grain is now, in the image it was found in.
+    fn distance_to(&self, particle: u32, other: &Found<D>) -> f64 {
+        let here = self.world.particle_now(&self.model, particle).position;
+        let mut there = self
+            .world
+            .particle_now(&self.model, other.particle)
+            .position;
+        for axis in 0..D {
+            if let Some(period) = self.model.boundary().period(axis) {
+                there[axis] += f64::from(other.turns[axis]) * period.length;
+            }
+        }
+        (there - here).norm()
     }
 
     fn find_within(&self, particle: u32, distance: f64, found: &mut Vec<Found<D>>) {

@@ -29,6 +29,10 @@ const MANY: usize = 16;
 /// next time.
 const FEW: usize = 3;
 
+/// Grains farther away than this from where they started, over the largest
+/// diameter, have escaped.
+const ESCAPE: f64 = 2.0e6;
+
 /// Leaves room for rounding.
 const ROUND: f64 = 1.0 - 1.0e-9;
 
@@ -95,6 +99,11 @@ impl<const D: usize> Neighbours<D> {
     /// The list of a grain; empty if it is at rest.
     pub(super) fn list(&self, particle: u32) -> &[Found<D>] {
         &self.ties[particle as usize].list
+    }
+
+    /// Whether a position is so far outside that a grain there has escaped.
+    pub(super) fn is_lost(&self, position: &Vector<D>) -> bool {
+        self.cells.outside(position) > ESCAPE * self.largest
     }
 
     /// Whether a grain has a list.

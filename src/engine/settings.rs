@@ -59,6 +59,16 @@ impl Guards {
         }
     }
 
+    /// The defaults with an exit speed that fits a rule's elastic cut-off V_c, in
+    /// √(gd): a tenth of it.
+    #[must_use]
+    pub fn for_elastic_speed(elastic_speed: f64) -> Self {
+        Guards {
+            exit_speed: 0.1 * elastic_speed,
+            ..Guards::default()
+        }
+    }
+
     /// The floor and the hold instead of the projection.
     #[must_use]
     pub fn floor_and_hold(floor_speed: f64, hold: f64) -> Self {
@@ -187,6 +197,10 @@ pub enum StopReason {
     NothingLeft,
     /// Collisions without end at one instant.
     Collapse(Collapse),
+    /// A grain has left: along an axis that is not periodic it is more than two
+    /// million diameters away from where the grains started. (Most often it
+    /// fell through a hole in the floor.)
+    Escaped(ParticleId),
 }
 
 /// A cascade of collisions that does not end.

@@ -72,6 +72,13 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
             validate(ParticleId(place as u32), particle)?;
             largest = largest.max(particle.diameter);
         }
+        if M::Dynamics::GROWS && particles.iter().any(|grain| grain.mode == Mode::Frozen) {
+            return Err(SetupError::Parameter {
+                field: "growth_rate",
+                value: model.dynamics().growth_rate(),
+                allowed: "diameters that grow are for grains that are awake: sleepers do not notice each other",
+            });
+        }
         let scale = scale_at::<M, D>(&model, settings.start);
         if scale.is_nan() || scale <= 0.0 {
             return Err(SetupError::Parameter {
@@ -106,6 +113,7 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
             ceiling_until: settings.start,
             regrid_at: Time::NEVER,
             collapse: None,
+            escaped: None,
             commands: Commands::default(),
             scratch: Vec::new(),
             model,

@@ -37,6 +37,8 @@ pub struct Simulation<M: Model<D>, const D: usize> {
     /// When growing diameters will have outgrown the grid.
     pub(super) regrid_at: Time,
     pub(super) collapse: Option<Collapse>,
+    /// A grain that has left for good.
+    pub(super) escaped: Option<ParticleId>,
     pub(super) commands: Commands<EventOf<M, D>>,
     pub(super) scratch: Vec<Found<D>>,
 }

@@ -18,6 +18,12 @@ impl<M: Model<D>, const D: usize> Surroundings<D> for View<'_, M, D> {
         self.model.dynamics().gravity(self.world.clock)
     }
 
+    fn ground_velocity(&self, id: ParticleId) -> Vector<D> {
+        let position = self.particle(id).position;
+        let dynamics = self.model.dynamics();
+        dynamics.ground_velocity(&position, self.world.clock)
+    }
+
     fn particle(&self, id: ParticleId) -> Particle<D> {
         self.world.particle_now(self.model, id.0)
     }

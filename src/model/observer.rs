@@ -19,6 +19,10 @@ pub enum OccurrenceKind {
     Sleep,
     /// A policy's own event woke a grain.
     CheckWake,
+    /// The end of a cascade of collisions changed the velocity of a grain that
+    /// took no part in the last of them. (Of those that did, it is part of the
+    /// collision.) Not counted among the physical events.
+    Guard,
 }
 
 impl OccurrenceKind {
@@ -32,6 +36,7 @@ impl OccurrenceKind {
             OccurrenceKind::Wall => "wall",
             OccurrenceKind::Sleep => "sleep",
             OccurrenceKind::CheckWake => "check_wake",
+            OccurrenceKind::Guard => "guard",
         }
     }
 }

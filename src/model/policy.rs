@@ -39,7 +39,8 @@ impl Reason {
 pub enum Place {
     /// Half-way in time to its next collision, so that nothing is asleep
     /// exactly at contact (the paper's section 2). A grain that has no next
-    /// collision does not sleep; one that collides before cancels it.
+    /// collision, with grains no farther away than the shortest period, does
+    /// not sleep; one that collides before cancels it.
     HalfWay,
     /// Where it is.
     Here,
@@ -60,7 +61,8 @@ pub struct Waking<const D: usize> {
     /// Its velocity before the collision that woke it is resolved, in √(gd).
     pub velocity: Vector<D>,
     /// Kinetic energy to add after that collision by lengthening its velocity,
-    /// in mgd.
+    /// in mgd. Without a collision, or without a velocity to lengthen, there is
+    /// none to add.
     pub extra_energy: f64,
 }
 
@@ -171,6 +173,11 @@ pub trait StatePolicy<const D: usize> {
     type Memory: Clone + Default + Debug + Serialize + DeserializeOwned;
     /// Events of its own, such as self-checks; [`NoEvent`] for none.
     type Event: Copy + Debug + Serialize + DeserializeOwned;
+
+    /// False if no grain ever falls asleep. Otherwise a grain that is caught
+    /// between static ones may be put to sleep by the engine's guards, whatever
+    /// [`should_sleep`](StatePolicy::should_sleep) says.
+    const SLEEPS: bool = true;
 
     /// Does the grain of `impact`, which leaves with velocity `after`, fall
     /// asleep? Asked once for each mobile grain at each of its collisions of

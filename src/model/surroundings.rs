@@ -38,6 +38,9 @@ pub trait Surroundings<const D: usize> {
     /// Gravity now, in g.
     fn gravity(&self) -> Vector<D>;
 
+    /// Velocity of what counts as at rest where a grain is, in √(gd).
+    fn ground_velocity(&self, id: ParticleId) -> Vector<D>;
+
     /// A grain, now.
     fn particle(&self, id: ParticleId) -> Particle<D>;
 

@@ -11,6 +11,8 @@ impl<const D: usize> StatePolicy<D> for Never {
     type Memory = ();
     type Event = NoEvent;
 
+    const SLEEPS: bool = false;
+
     fn should_sleep<S: Surroundings<D>>(
         &self,
         _impact: &Impact<D>,

@@ -349,7 +349,7 @@ impl<const D: usize> StatePolicy<D> for SlowDescent {
     ) {
         let velocity = match (self.store_at, memory.deciding) {
             (StoreAt::Deciding, Some(velocity)) => velocity,
-            _ => near.particle(id).velocity,
+            _ => near.particle(id).velocity - near.ground_velocity(id),
         };
         memory.asleep = Some(Asleep {
             velocity,

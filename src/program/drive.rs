@@ -188,6 +188,14 @@ impl<M: Model<D>, const D: usize> Run<'_, M, D> {
                     end.collapse = Some(CollapseReport::from(&collapse));
                     return Ok(end);
                 }
+                StopReason::Escaped(particle) => {
+                    let mut end = End::new(StoppedBy::Error, 3);
+                    end.error = Some(format!(
+                        "grain {particle} has left the system: it is more than 2e6 diameters \
+                         away; is there a hole in the floor, or no floor at all?"
+                    ));
+                    return Ok(end);
+                }
                 StopReason::Events if events >= event_limit => {
                     return Ok(End::new(StoppedBy::Events, 0));
                 }

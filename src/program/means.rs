@@ -99,6 +99,7 @@ impl NormalMean {
 impl<const D: usize> Observer<D> for NormalMean {
     fn observe<S: Surroundings<D>>(&mut self, event: &Occurrence<D>, _: &S) {
         match event.kind {
+            OccurrenceKind::Guard => {}
             OccurrenceKind::Sleep => self.change(-1, event.time),
             OccurrenceKind::CheckWake => self.change(1, event.time),
             OccurrenceKind::Wake => {
