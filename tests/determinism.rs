@@ -1,11 +1,11 @@
 //! The same bits in every build: trajectories pinned by their hashes.
 //!
 //! `cargo test` checks them in the test profile, with assertions;
-//! `cargo test --release --test determinism` as users run them, and with
-//! `CARGO_PROFILE_TEST_OPT_LEVEL=0` set, those named `pinned` without any
-//! optimisation. A hash moves
-//! only when the physics does, or the last bit of its arithmetic: never with
-//! the neighbour scheme, the queue, the clock, or the build.
+//! `cargo test --release --test determinism` as users run them, and
+//! `CARGO_PROFILE_TEST_OPT_LEVEL=0 cargo test --test determinism pinned` without
+//! any optimisation. A hash moves only when the physics does, or the last bit of
+//! its arithmetic: never with the neighbour scheme, the queue, the clock, or the
+//! build.
 
 mod common;
 
