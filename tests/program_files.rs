@@ -92,6 +92,16 @@ proptest! {
 }
 
 #[test]
+fn the_box_of_grains_at_the_ends_of_the_world_is_finite() {
+    let at = |x: f64| Particle::<2>::fixed(Vector::<2>::new(x, 0.0));
+    let grains = [at(f64::MIN), at(f64::MAX)];
+    let frame = Frame::new(&grains, Time::ZERO, &Cuboid::open());
+    let back = &read_frames(&text_of(&frame))[0];
+    assert_eq!(back.lengths[0], f64::MAX);
+    assert_eq!(back.particles::<2>()[1].position[0], f64::MAX);
+}
+
+#[test]
 fn frames_stand_one_after_the_other() {
     let at = |x: f64| [Particle::<2>::fixed(Vector::<2>::new(x, 0.0))];
     let mut text = Vec::new();

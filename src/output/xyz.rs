@@ -84,7 +84,8 @@ impl Frame {
             frame.origin[axis] = low;
             frame.lengths[axis] = match period {
                 Some(period) => period.length,
-                None if high > low => high - low,
+                // Of grains as far apart as numbers go, the box cannot say more.
+                None if high > low => (high - low).min(f64::MAX),
                 None => 1.0,
             };
             frame.periodic[axis] = period.is_some();
@@ -184,5 +185,5 @@ fn extent<const D: usize>(
             }
         }
     }
-    (low, high)
+    (low.max(f64::MIN), high.min(f64::MAX))
 }
