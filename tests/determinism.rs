@@ -20,7 +20,7 @@ use grainfall::setup::Sizes;
 use grainfall::{Particle, Time, Vector};
 
 const EQUAL: Sizes = Sizes::Equal { diameter: 1.0 };
-const DEPOSITION: &str = "d1cd5b8fb1d57c04";
+const DEPOSITION: &str = "06b171590ab9987d";
 const HEAP: &str = "8d9daead6e9a66db";
 const GAS: &str = "e82c7a85c2abf60a";
 

@@ -164,6 +164,38 @@ fn a_first_contact_puts_nobody_to_sleep() {
 }
 
 #[test]
+fn elastic_bounces_are_equally_fast() {
+    // Below V_c = 0.15 nothing is lost, so no landing is slower than the one
+    // before, whatever rounding makes of its last digits; and slow they are.
+    for step in 0..200 {
+        let height = 1.0e-3 + 1.0e-4 * f64::from(step) / 7.0;
+        let grains = vec![
+            Particle::fixed(Vector::<2>::new(0.3, 0.1)),
+            grain(0.3, 1.1 + height, 0.0, 0.0),
+        ];
+        let policy = SlowDescent::with_threshold(0.2);
+        let model = heavy(rule(0.15), policy, [Side::Open; 2]);
+        let mut simulation = Simulation::new(model, grains).unwrap();
+        assert_eq!(
+            simulation.run(&Limits::events(40), &mut ()),
+            StopReason::Events
+        );
+        assert_eq!(simulation.counts().elastic, 40);
+        assert_eq!(simulation.counts().sleep, 0, "from {height} d");
+    }
+    // What V_c is in earnest: 5e-9 d high.
+    let grains = vec![
+        Particle::fixed(Vector::<2>::new(0.3, 0.1)),
+        grain(0.3, 1.1 + 4.0e-9, 0.0, 0.0),
+    ];
+    let model = heavy(rule(1.0e-4), SlowDescent::default(), [Side::Open; 2]);
+    let mut simulation = Simulation::new(model, grains).unwrap();
+    let why = simulation.run(&Limits::events(10_000), &mut ());
+    assert_eq!(why, StopReason::Events);
+    assert_eq!(simulation.counts().sleep, 0);
+}
+
+#[test]
 fn a_hit_wakes_if_its_normal_speed_is_above_the_threshold() {
     for (speed, wakes) in [(0.1 * (1.0 + 1.0e-12), true), (0.1, false), (0.0999, false)] {
         let sleeper = Particle::frozen(Vector::<2>::zeros());

@@ -163,14 +163,14 @@ fn work_of_a_deposition() {
     let mut simulation = Simulation::new(model, rain_on_base::<3>(1, 200, 6.0, EQUAL)).unwrap();
     simulation.run(&Limits::all_frozen(), &mut ());
     insta::assert_snapshot!(work(simulation.counts()), @r"
-    pair 91600
-    frozen 236000
-    wake 7440
-    sleep 7640
+    pair 93300
+    frozen 243000
+    wake 7390
+    sleep 7590
     wall 0
-    elastic 169000
-    transfer 6590
-    guard 317
+    elastic 178000
+    transfer 6600
+    guard 334
     ");
 }
 

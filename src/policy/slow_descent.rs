@@ -202,6 +202,17 @@ impl SlowDescent {
     }
 }
 
+/// Difference of two kinetic energies, over the mass, up to which they are
+/// equal, in gd: well above what the rounding of a place makes of it, 10⁻¹⁵ or
+/// so, and well below the energy of a bounce at the slowest V_c in use.
+const EQUAL_ENERGY: f64 = 1.0e-12;
+
+/// Whether a speed is lower than an earlier one by more than rounding: bounces
+/// that are elastic, below V_c, are all equally fast, and wear nobody out.
+fn is_slower(speed: f64, before: f64) -> bool {
+    0.5 * (before - speed) * (before + speed) > EQUAL_ENERGY
+}
+
 /// What a sleeper has lost, and when.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(bound = "")]
@@ -292,7 +303,7 @@ impl<const D: usize> StatePolicy<D> for SlowDescent {
         }
         if self.comparison != Comparison::None {
             let before = previous.unwrap_or(0.0);
-            if speed >= before {
+            if !is_slower(speed, before) {
                 let slower = Reason::new("slower than at the previous collision", speed, before);
                 return SleepDecision::Stay(slower);
             }
