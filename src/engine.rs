@@ -16,6 +16,7 @@ mod guards;
 mod neighbours;
 mod projection;
 mod queue;
+mod saved;
 mod search;
 mod settings;
 mod setup;
@@ -25,5 +26,6 @@ mod transitions;
 mod view;
 
 pub use counts::{Counts, ModeCounts};
+pub use saved::{RestoreError, Saved, SavedOf};
 pub use settings::{Collapse, Guards, Limits, Settings, StopReason};
 pub use simulation::Simulation;
