@@ -284,7 +284,10 @@ fn restart<M: Model<D> + Clone, const D: usize>(
     assert_eq!(hash.value(), straight.value());
     assert_eq!(simulation.counts(), through.counts());
     assert_eq!(simulation.max_overlap(), through.max_overlap());
-    assert!(bytes(&simulation) == bytes(&through), "the last states differ");
+    assert!(
+        bytes(&simulation) == bytes(&through),
+        "the last states differ"
+    );
     met
 }
 
@@ -338,7 +341,10 @@ fn restart_of_heaps<const D: usize>(count: usize, width: f64, end: f64) {
         let sizes = if number % 2 == 0 {
             Sizes::default()
         } else {
-            Sizes::Uniform { least: 0.7, most: 1.3 }
+            Sizes::Uniform {
+                least: 0.7,
+                most: 1.3,
+            }
         };
         let grains = rain_on_base::<D>(seed, count, width, sizes);
         let model = heavy(rule(1.0e-3), policy, periodic_laterally(width));
@@ -373,7 +379,15 @@ fn a_heap_in_space_goes_on_as_if_never_stopped() {
 
 fn restart_of_gases<const D: usize>(seed: u64) {
     for (restitution, growth) in [(1.0, None), (0.8, None), (1.0, Some(0.02))] {
-        let (grains, sides) = gas_grains::<D>(seed, 60, 0.2, Sizes::Uniform { least: 0.5, most: 1.0 });
+        let (grains, sides) = gas_grains::<D>(
+            seed,
+            60,
+            0.2,
+            Sizes::Uniform {
+                least: 0.5,
+                most: 1.0,
+            },
+        );
         let rule = Restitution {
             restitution,
             frozen_restitution: restitution,
@@ -433,7 +447,10 @@ fn damaged_states_are_refused() {
             },
         }
     }
-    assert!(unread > 1000 && refused > 500 && taken > 500, "{unread} {refused} {taken}");
+    assert!(
+        unread > 1000 && refused > 500 && taken > 500,
+        "{unread} {refused} {taken}"
+    );
     // A state of another model.
     let other = heavy(rule(1.0e-3), policy, periodic_laterally::<2>(9.0));
     let state = postcard::from_bytes(&good).unwrap();
