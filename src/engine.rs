@@ -10,9 +10,11 @@ mod cascade;
 mod cells;
 mod collisions;
 mod counts;
+mod energy;
 mod events;
 mod foresight;
 mod guards;
+mod ledger;
 mod neighbours;
 mod projection;
 mod queue;
@@ -25,5 +27,6 @@ mod transitions;
 mod view;
 
 pub use counts::{Counts, ModeCounts};
+pub use ledger::EnergyLedger;
 pub use settings::{Collapse, Guards, Limits, Settings, StopReason};
 pub use simulation::Simulation;

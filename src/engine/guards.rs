@@ -3,11 +3,21 @@
 
 use std::ops::{Index, IndexMut};
 
+use crate::engine::settings::Guards;
 use crate::engine::slot::Partner;
 use crate::time::Time;
 
 /// Collisions closer together than this, in √(d/g), are at one instant.
 const INSTANT: f64 = 1.0e-12;
+
+/// So are those closer together than this part of the exit speed over gravity
+/// between which the surfaces come apart by less than `HAIR`: a grain that
+/// slides along another in bounces of 10⁻¹² √(gd), which are elastic, would
+/// make 10¹¹ of them in a unit of time.
+const HURRY: f64 = 0.01;
+
+/// Less than this, in d, does not separate two surfaces.
+const HAIR: f64 = 1.0e-12;
 
 /// How many recent contacts of a grain the hold remembers.
 const HELD: usize = 6;
@@ -51,14 +61,17 @@ pub(super) struct Traces {
     /// Empty if the hold is off.
     holds: Vec<Holds>,
     hold: f64,
+    /// Collisions closer together than this may be at one instant.
+    moment: f64,
 }
 
 impl Traces {
-    pub(super) fn new(hold: f64) -> Self {
+    pub(super) fn new(guards: &Guards) -> Self {
         Traces {
             traces: Vec::new(),
             holds: Vec::new(),
-            hold,
+            hold: guards.hold,
+            moment: HURRY * guards.exit_speed,
         }
     }
 
@@ -80,13 +93,14 @@ impl Traces {
         self.holds.pop();
     }
 
-    /// Notes a collision, with a static obstacle or not; returns how many the
-    /// grain has made at this instant.
+    /// Notes a collision at this closing speed, with a static obstacle or not;
+    /// returns how many the grain has made at this instant.
     pub(super) fn collided(
         &mut self,
         particle: u32,
         partner: Partner,
         is_static: bool,
+        speed: f64,
         now: Time,
     ) -> u32 {
         let trace = &mut self.traces[particle as usize];
@@ -98,7 +112,10 @@ impl Traces {
         if trace.confined <= 1 {
             trace.confined_since = now;
         }
-        let at_once = trace.last.is_finite() && now - trace.last < INSTANT;
+        let at_once = trace.last.is_finite() && {
+            let wait = now - trace.last;
+            wait < INSTANT || (wait < self.moment && speed * wait < HAIR)
+        };
         trace.run = if at_once {
             trace.run.saturating_add(1)
         } else {

@@ -105,33 +105,11 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
         &self.memories[id.index()]
     }
 
-    /// Kinetic energy now, in mgd, of all grains but fixed ones.
-    #[must_use]
-    pub fn kinetic_energy(&self) -> f64 {
-        self.sum(Particle::kinetic_energy)
-    }
-
-    /// Potential energy now, in mgd, of all grains but fixed ones, counted from
-    /// the origin. Along a periodic axis it is that of the primary cell.
-    #[must_use]
-    pub fn potential_energy(&self) -> f64 {
-        let gravity = self.model.dynamics().gravity(self.world.clock);
-        self.sum(|particle| -particle.mass * gravity.dot(&particle.position))
-    }
-
     /// The deepest overlap of any grain with a neighbour, in d, over all events
     /// so far: looked for among all neighbours of an event's grains.
     #[must_use]
     pub fn max_overlap(&self) -> f64 {
         self.deepest
-    }
-
-    fn sum(&self, of: impl Fn(&Particle<D>) -> f64) -> f64 {
-        (0..self.world.bodies.len() as u32)
-            .map(|id| self.particle(ParticleId(id)))
-            .filter(|particle| particle.mode != crate::particle::Mode::Fixed)
-            .map(|particle| of(&particle))
-            .sum()
     }
 
     /// Diameters at `time` over those at t = 0.
