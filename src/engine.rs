@@ -9,6 +9,7 @@ mod body;
 mod cascade;
 mod cells;
 mod collisions;
+mod consistency;
 mod counts;
 mod energy;
 mod events;

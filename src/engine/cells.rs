@@ -6,6 +6,8 @@
 //! it is the one whose cell lies next to the grain's own. Outermost cells of
 //! axes that are not periodic reach to infinity.
 
+mod check;
+
 use crate::model::{Boundary, Period};
 use crate::particle::Vector;
 

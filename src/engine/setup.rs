@@ -3,6 +3,7 @@
 use std::collections::BinaryHeap;
 
 use crate::engine::body::{Body, World, scale_at};
+use crate::engine::consistency::Vigil;
 use crate::engine::counts::{Counts, ModeCounts};
 use crate::engine::guards::Traces;
 use crate::engine::ledger::{Entry, Ledger};
@@ -118,6 +119,7 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
             escaped: None,
             commands: Commands::default(),
             scratch: Vec::new(),
+            vigil: Vigil::default(),
             model,
         };
         for particle in particles {

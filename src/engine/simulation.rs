@@ -3,6 +3,7 @@ use std::collections::BinaryHeap;
 
 use crate::engine::body::{World, flight_of, scale_at};
 use crate::engine::cells::Found;
+use crate::engine::consistency::Vigil;
 use crate::engine::counts::{Counts, ModeCounts};
 use crate::engine::guards::Traces;
 use crate::engine::neighbours::Neighbours;
@@ -41,6 +42,7 @@ pub struct Simulation<M: Model<D>, const D: usize> {
     pub(super) escaped: Option<ParticleId>,
     pub(super) commands: Commands<EventOf<M, D>>,
     pub(super) scratch: Vec<Found<D>>,
+    pub(super) vigil: Vigil,
 }
 
 impl<M: Model<D>, const D: usize> Simulation<M, D> {
@@ -161,6 +163,11 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
         }
     }
 
+    /// Diameters that lists are made for, over those at t = 0.
+    pub(super) fn listed_scale(&self) -> f64 {
+        listed_scale::<M, D>(self.world.near.largest(), self.world.largest)
+    }
+
     /// Makes the neighbour list of a moving grain for where it is now.
     pub(super) fn tie(&mut self, particle: u32) {
         let World {
@@ -173,12 +180,7 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
         let body = &bodies[particle as usize];
         let flight = flight_of(&self.model, particle, body);
         let after = *clock - body.since;
-        let scale = if M::Dynamics::GROWS {
-            // As large as they may become on this grid.
-            near.largest() / *largest
-        } else {
-            1.0
-        };
+        let scale = listed_scale::<M, D>(near.largest(), *largest);
         let radius_of = |other: u32| scale * bodies[other as usize].radius;
         near.tie(
             particle,
@@ -186,5 +188,14 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
             &flight.velocity(after),
             radius_of,
         );
+    }
+}
+
+/// As large as grains may become on this grid.
+fn listed_scale<M: Model<D>, const D: usize>(for_largest: f64, largest: f64) -> f64 {
+    if M::Dynamics::GROWS {
+        for_largest / largest
+    } else {
+        1.0
     }
 }
