@@ -12,6 +12,6 @@ pub use events::EventLog;
 pub use folder::{FolderError, RunFolder, write_atomically};
 pub use series::{Series, SeriesRow};
 pub use summary::{
-    CollapseReport, EventCounts, FractionReport, ParticleCounts, StoppedBy, Summary,
+    CollapseReport, EnergyReport, EventCounts, FractionReport, ParticleCounts, StoppedBy, Summary,
 };
 pub use xyz::{Frame, XyzError, XyzReader};

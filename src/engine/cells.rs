@@ -6,6 +6,7 @@
 //! it is the one whose cell lies next to the grain's own. Outermost cells of
 //! axes that are not periodic reach to infinity.
 
+mod check;
 mod saved;
 
 pub(super) use saved::SavedCells;

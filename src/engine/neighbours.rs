@@ -11,6 +11,7 @@
 //! What is listed, and when, decides only how much has to be predicted: it
 //! never changes a trajectory.
 
+mod check;
 mod saved;
 
 pub(super) use saved::SavedNeighbours;

@@ -5,6 +5,8 @@
 //! the cost of an event does not depend on how many grains wait. Slots decide
 //! where an entry lies, never which comes first.
 
+mod check;
+
 use serde::{Deserialize, Serialize};
 
 use crate::time::Time;

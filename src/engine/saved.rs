@@ -11,8 +11,10 @@ use std::cmp::Reverse;
 use serde::{Deserialize, Serialize};
 
 use crate::engine::body::{Body, World, flight_of};
+use crate::engine::consistency::Vigil;
 use crate::engine::counts::{Counts, ModeCounts};
 use crate::engine::guards::Traces;
+use crate::engine::ledger::Ledger;
 use crate::engine::neighbours::{Neighbours, SavedNeighbours};
 use crate::engine::queue::{EventQueue, Rank};
 use crate::engine::settings::{Collapse, Settings};
@@ -49,6 +51,7 @@ pub struct Saved<R, E, S, const D: usize> {
     traces: Traces,
     near: SavedNeighbours<D>,
     largest: f64,
+    ledger: Ledger,
     counts: Counts,
     deepest: f64,
     speed_ceiling: f64,
@@ -69,23 +72,16 @@ pub enum RestoreError {
     #[error(transparent)]
     Setup(#[from] SetupError),
     /// The state is none that a simulation of this model can be in.
-    #[error("no state of a simulation of this model: {reason}{}", at(*.grain))]
+    #[error("no state of a simulation of this model: {reason}")]
     Inconsistent {
         /// What is wrong.
-        reason: &'static str,
-        /// With which grain, if it is about one.
-        grain: Option<ParticleId>,
+        reason: String,
     },
 }
 
-fn at(grain: Option<ParticleId>) -> String {
-    grain.map_or_else(String::new, |id| format!(" (grain {id})"))
-}
-
-fn wrong(reason: &'static str) -> RestoreError {
+fn wrong(reason: impl Into<String>) -> RestoreError {
     RestoreError::Inconsistent {
-        reason,
-        grain: None,
+        reason: reason.into(),
     }
 }
 
@@ -108,6 +104,7 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
             traces: self.traces.clone(),
             near: self.world.near.save(),
             largest: self.world.largest,
+            ledger: self.world.ledger.clone(),
             counts: self.counts,
             deepest: self.deepest,
             speed_ceiling: self.speed_ceiling,
@@ -124,7 +121,7 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
     /// # Errors
     ///
     /// [`RestoreError`] if the state is none that a simulation of this model can
-    /// be in. (What a policy remembers is taken as it is.)
+    /// be in.
     pub fn restore(model: M, saved: SavedOf<M, D>) -> Result<Self, RestoreError> {
         check_parts(&model, &saved.settings)?;
         saved.check(&model)?;
@@ -142,7 +139,7 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
             queue.push_empty();
             queue.set(id as u32, slot.key(id as u32));
         }
-        Ok(Simulation {
+        let restored = Simulation {
             settings: saved.settings,
             world: World {
                 bodies,
@@ -151,6 +148,7 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
                 clock: saved.clock,
                 modes,
                 largest: saved.largest,
+                ledger: saved.ledger,
             },
             memories: saved.memories,
             spins: saved.spins,
@@ -168,8 +166,13 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
             escaped: saved.escaped,
             commands: Commands::default(),
             scratch: Vec::new(),
+            vigil: Vigil::default(),
             model,
-        })
+        };
+        for id in 0..count as u32 {
+            restored.check_grain(id).map_err(wrong)?;
+        }
+        Ok(restored)
     }
 }
 
@@ -204,23 +207,17 @@ impl<R, E, S, const D: usize> Saved<R, E, S, D> {
             Partner::Particle(id) => (id as usize) < count,
             Partner::Wall(wall) => wall.index() < walls,
         };
-        let hold = self.settings.guards.hold;
-        if let Some(reason) = self.traces.misfit(hold, count, is_there) {
+        let guards = &self.settings.guards;
+        if let Some(reason) = self.traces.misfit(guards, count, is_there) {
             return Err(wrong(reason));
         }
         for id in 0..count {
-            let met = self.slots[id].partner;
-            let reason = if !is_there(met) || met == Partner::Particle(id as u32) {
-                "it is to meet nobody"
-            } else if let Some(reason) = self.misfit(id, model) {
-                reason
-            } else {
-                continue;
-            };
-            return Err(RestoreError::Inconsistent {
-                reason,
-                grain: Some(ParticleId(id as u32)),
-            });
+            if !is_there(self.slots[id].partner) {
+                return Err(wrong(format!("grain {id} is to meet nobody")));
+            }
+            if let Some(reason) = self.misfit(id, model) {
+                return Err(wrong(format!("grain {id} {reason}")));
+            }
         }
         for alarm in &self.alarms {
             let key = alarm.key;
@@ -268,34 +265,22 @@ impl<R, E, S, const D: usize> Saved<R, E, S, D> {
         Ok(())
     }
 
-    /// What is wrong with a grain and what lies ahead of it, if anything.
+    /// What is wrong with a grain, if anything.
     fn misfit<M: Model<D>>(&self, id: usize, model: &M) -> Option<&'static str> {
-        let (body, slot, mass) = (&self.bodies[id], &self.slots[id], self.masses[id]);
+        let (body, mass) = (&self.bodies[id], self.masses[id]);
         let is_number = |x: &f64| x.abs() <= LARGEST;
         if !body.position.iter().chain(&body.velocity).all(is_number) {
-            return Some("it is nowhere");
+            return Some("is nowhere");
         }
         for axis in 0..D {
             if let Some(period) = model.boundary().period(axis) {
                 let turns = (body.position[axis] - period.origin) / period.length;
                 if !(-1.0e-6..=1.0 + 1.0e-6).contains(&turns) {
-                    return Some("it is outside the primary cell");
+                    return Some("is outside the primary cell");
                 }
             }
         }
-        if !(body.radius > 0.0 && body.radius.is_finite() && mass > 0.0 && mass.is_finite()) {
-            return Some("its size or mass is none");
-        }
-        if body.since > self.clock {
-            return Some("its last event is yet to come");
-        }
-        let next = slot.contact.min(slot.sleep).min(slot.renewal);
-        if next < self.clock {
-            return Some("its next event lies in the past");
-        }
-        if body.mode.is_static() && slot.bound().is_finite() {
-            return Some("it is at rest and yet meets somebody");
-        }
-        None
+        let is_amount = |number: f64| number > 0.0 && number.is_finite();
+        (!is_amount(body.radius) || !is_amount(mass)).then_some("has no size or mass")
     }
 }

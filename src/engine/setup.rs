@@ -3,8 +3,10 @@
 use std::collections::BinaryHeap;
 
 use crate::engine::body::{Body, World, scale_at};
+use crate::engine::consistency::Vigil;
 use crate::engine::counts::{Counts, ModeCounts};
 use crate::engine::guards::Traces;
+use crate::engine::ledger::{Entry, Ledger};
 use crate::engine::neighbours::Neighbours;
 use crate::engine::queue::EventQueue;
 use crate::engine::settings::Settings;
@@ -81,6 +83,7 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
                 clock: settings.start,
                 modes: ModeCounts::default(),
                 largest,
+                ledger: Ledger::default(),
             },
             memories: vec![MemoryOf::<M, D>::default(); count],
             spins: vec![SpinOf::<M, D>::default(); count],
@@ -88,7 +91,7 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
             queue: EventQueue::new(count, settings.start),
             alarms: BinaryHeap::new(),
             alarm_count: 0,
-            traces: Traces::new(settings.guards.hold),
+            traces: Traces::new(&settings.guards),
             counts: Counts::default(),
             deepest: 0.0,
             speed_ceiling: 0.0,
@@ -98,6 +101,7 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
             escaped: None,
             commands: Commands::default(),
             scratch: Vec::new(),
+            vigil: Vigil::default(),
             model,
         };
         for particle in particles {
@@ -114,6 +118,8 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
             simulation.predict(particle);
         }
         simulation.deepest = 0.0;
+        let energy = simulation.energy_ledger().now;
+        simulation.world.ledger.add(Entry::AtStart, energy);
         Ok(simulation)
     }
 
@@ -150,6 +156,8 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
         // those that move.
         self.tie(index);
         self.note_speed(index);
+        let energy = self.energy_of(&self.particle(id));
+        self.world.ledger.add(Entry::Inserted, energy);
         self.tell_started(index);
         self.predict(index);
         self.release_if_static(index);

@@ -5,6 +5,7 @@ use std::cmp::Reverse;
 
 use serde::{Deserialize, Serialize};
 
+use crate::engine::ledger::Entry;
 use crate::engine::queue::{Key, Rank};
 use crate::engine::simulation::Simulation;
 use crate::engine::slot::{Partner, Slot};
@@ -68,6 +69,8 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
         let rest = model.dynamics().ground_velocity(&state.position, now);
         self.world
             .write(model, particle, state.position, rest, Mode::Frozen);
+        self.world
+            .note_change(Entry::Sleep, particle, &state.velocity, &rest);
         self.slots[particle as usize] = Slot::EMPTY;
         self.traces[particle as usize].partner = Partner::Nobody;
         self.schedule();
@@ -206,6 +209,8 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
             velocity,
             Mode::Normal,
         );
+        self.world
+            .note_change(Entry::GivenBack, particle, &before.velocity, &velocity);
         self.traces[particle as usize].partner = Partner::Nobody;
         self.tie_if_moving(particle);
         self.note_speed(particle);

@@ -188,7 +188,6 @@ impl Checkpoint {
     }
 
     /// The checkpoints of a run folder with their names, the newest first.
-    #[must_use]
     pub fn all(folder: &RunFolder) -> [(&'static str, Result<Self, CheckpointError>); 2] {
         [NEWEST, PREVIOUS].map(|name| (name, Checkpoint::read(&folder.file(name))))
     }

@@ -476,6 +476,7 @@ impl<M: Model<D>, const D: usize> Run<'_, M, D> {
             particles: simulation.mode_counts().into(),
             kinetic_energy: simulation.kinetic_energy(),
             potential_energy: plain(simulation.potential_energy()),
+            energy_ledger: simulation.energy_ledger().into(),
             packing_fraction: fraction.map(|slab| FractionReport {
                 value: slab.value,
                 from: slab.from,
