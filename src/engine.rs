@@ -16,6 +16,7 @@ mod events;
 mod foresight;
 mod guards;
 mod ledger;
+mod missed;
 mod neighbours;
 mod projection;
 mod queue;
@@ -30,6 +31,7 @@ mod view;
 
 pub use counts::{Counts, ModeCounts};
 pub use ledger::EnergyLedger;
+pub use missed::{Audit, Missed};
 pub use saved::{RestoreError, Saved, SavedOf};
 pub use settings::{Collapse, Guards, Limits, Settings, StopReason};
 pub use simulation::Simulation;

@@ -20,7 +20,10 @@ fn heap() -> Heap {
     let model = Parts {
         dynamics: UniformGravity::<2>::down(),
         predictor: Polynomial,
-        collision_rule: Restitution::default(),
+        collision_rule: Restitution {
+            elastic_speed: 1.0e-2,
+            ..Restitution::default()
+        },
         state_policy: SlowDescent {
             self_check: Some(SelfCheck::default()),
             ..SlowDescent::with_threshold(0.3)
