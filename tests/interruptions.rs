@@ -368,12 +368,12 @@ fn restart_of_heaps<const D: usize>(count: usize, width: f64, end: f64) {
 
 #[test]
 fn a_heap_in_the_plane_goes_on_as_if_never_stopped() {
-    restart_of_heaps::<2>(60, 8.0, 40.0);
+    restart_of_heaps::<2>(60, 10.0, 14.0);
 }
 
 #[test]
 fn a_heap_in_space_goes_on_as_if_never_stopped() {
-    restart_of_heaps::<3>(60, 4.0, 20.0);
+    restart_of_heaps::<3>(60, 4.0, 14.0);
 }
 
 fn restart_of_gases<const D: usize>(seed: u64) {
@@ -396,12 +396,12 @@ fn restart_of_gases<const D: usize>(seed: u64) {
         match growth {
             None => {
                 let start = Simulation::new(free.clone(), grains).unwrap();
-                restart(&start, &free, 30.0, seed);
+                restart(&start, &free, 5.0, seed);
             }
             Some(rate) => {
                 let model = free.with_dynamics(Growing::new(ForceFree, rate));
                 let start = Simulation::new(model.clone(), grains).unwrap();
-                restart(&start, &model, 15.0, seed);
+                restart(&start, &model, 4.0, seed);
             }
         }
     }
