@@ -1,11 +1,13 @@
 //! What a run leaves behind: a folder of plain files.
 
+mod checkpoint;
 mod events;
 mod folder;
 mod series;
 mod summary;
 mod xyz;
 
+pub use checkpoint::{Checkpoint, CheckpointError};
 pub use events::EventLog;
 pub use folder::{FolderError, RunFolder, write_atomically};
 pub use series::{Series, SeriesRow};

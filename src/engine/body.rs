@@ -1,5 +1,7 @@
 //! What the engine stores of grains, and where they are now.
 
+use serde::{Deserialize, Serialize};
+
 use crate::engine::cells::Found;
 use crate::engine::counts::ModeCounts;
 use crate::engine::ledger::{Entry, Ledger};
@@ -9,7 +11,8 @@ use crate::particle::{Mode, Particle, ParticleId, Vector};
 use crate::time::Time;
 
 /// The state of a grain at its last event.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
+#[serde(bound = "")]
 pub(super) struct Body<const D: usize> {
     pub(super) position: Vector<D>,
     pub(super) velocity: Vector<D>,

@@ -7,6 +7,9 @@
 //! axes that are not periodic reach to infinity.
 
 mod check;
+mod saved;
+
+pub(super) use saved::SavedCells;
 
 use crate::model::{Boundary, Period};
 use crate::particle::Vector;

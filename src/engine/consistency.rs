@@ -118,7 +118,7 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
     }
 
     /// What concerns one grain.
-    fn check_grain(&self, particle: u32) -> Result<(), String> {
+    pub(super) fn check_grain(&self, particle: u32) -> Result<(), String> {
         let index = particle as usize;
         let now = self.world.clock;
         let body = &self.world.bodies[index];

@@ -3,6 +3,8 @@
 
 use std::ops::{Index, IndexMut};
 
+use serde::{Deserialize, Serialize};
+
 use crate::engine::settings::Guards;
 use crate::engine::slot::Partner;
 use crate::time::Time;
@@ -26,7 +28,7 @@ const HELD: usize = 6;
 const LONG_AGO: Time = Time::FIRST;
 
 /// What is remembered of a grain's collisions.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 pub(super) struct Trace {
     /// Whom it left at its last event, if that was a collision.
     pub(super) partner: Partner,
@@ -41,7 +43,7 @@ pub(super) struct Trace {
 }
 
 /// Static partners that a grain may not meet again before a time.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 struct Holds {
     partners: [(u32, Time); HELD],
     next: usize,
@@ -55,7 +57,7 @@ impl Holds {
 }
 
 /// The traces of all grains.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub(super) struct Traces {
     traces: Vec<Trace>,
     /// Empty if the hold is off.
@@ -91,6 +93,28 @@ impl Traces {
     pub(super) fn forget_last(&mut self) {
         self.traces.pop();
         self.holds.pop();
+    }
+
+    /// What does not fit, in traces that have been read, if anything.
+    pub(super) fn misfit(
+        &self,
+        guards: &Guards,
+        count: usize,
+        is_there: impl Fn(Partner) -> bool,
+    ) -> Option<&'static str> {
+        let fresh = Traces::new(guards);
+        if self.hold != fresh.hold || self.moment != fresh.moment {
+            return Some("they follow other guards");
+        }
+        let held = if self.hold > 0.0 { count } else { 0 };
+        if self.traces.len() != count || self.holds.len() != held {
+            return Some("their number is not that of the grains");
+        }
+        if self.holds.iter().any(|holds| holds.next >= HELD) {
+            return Some("a hold is out of place");
+        }
+        let met = |trace: &Trace| is_there(trace.partner);
+        (!self.traces.iter().all(met)).then_some("a collision with nobody")
     }
 
     /// Notes a collision at this closing speed, with a static obstacle or not;

@@ -12,6 +12,9 @@
 //! never changes a trajectory.
 
 mod check;
+mod saved;
+
+pub(super) use saved::SavedNeighbours;
 
 use crate::engine::cells::{Cells, Found};
 use crate::model::Boundary;

@@ -7,10 +7,12 @@
 
 mod check;
 
+use serde::{Deserialize, Serialize};
+
 use crate::time::Time;
 
 /// What an entry announces, in the order in which equal times are served.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 pub(super) enum Rank {
     Contact,
     Wall,
@@ -20,7 +22,7 @@ pub(super) enum Rank {
 }
 
 /// When and in which order: time, kind, smaller id, larger id.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 pub(super) struct Key {
     pub(super) time: Time,
     pub(super) rank: Rank,

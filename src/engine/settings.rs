@@ -206,7 +206,7 @@ pub enum StopReason {
 }
 
 /// A cascade of collisions that does not end.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Collapse {
     /// The instant.
     pub time: Time,

@@ -43,25 +43,7 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
         particles: Vec<Particle<D>>,
         settings: Settings,
     ) -> Result<Self, SetupError> {
-        settings.guards.validate()?;
-        model.dynamics().validate()?;
-        model.collision_rule().validate()?;
-        model.state_policy().validate()?;
-        if !settings.start.is_finite() {
-            return Err(SetupError::Parameter {
-                field: "start",
-                value: settings.start.units(),
-                allowed: "a time that comes is allowed",
-            });
-        }
-        let horizon = settings.sleep_horizon;
-        if !(horizon > 0.0 && horizon.is_finite()) {
-            return Err(SetupError::Parameter {
-                field: "sleep_horizon",
-                value: horizon,
-                allowed: "a positive number is allowed",
-            });
-        }
+        check_parts(&model, &settings)?;
         let most = i32::MAX as usize;
         if particles.len() > most {
             return Err(SetupError::TooManyParticles {
@@ -258,6 +240,33 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
             }),
         }
     }
+}
+
+/// Refuses a model or settings that are out of range.
+pub(super) fn check_parts<M: Model<D>, const D: usize>(
+    model: &M,
+    settings: &Settings,
+) -> Result<(), SetupError> {
+    settings.guards.validate()?;
+    model.dynamics().validate()?;
+    model.collision_rule().validate()?;
+    model.state_policy().validate()?;
+    if !settings.start.is_finite() {
+        return Err(SetupError::Parameter {
+            field: "start",
+            value: settings.start.units(),
+            allowed: "a time that comes is allowed",
+        });
+    }
+    let horizon = settings.sleep_horizon;
+    if !(horizon > 0.0 && horizon.is_finite()) {
+        return Err(SetupError::Parameter {
+            field: "sleep_horizon",
+            value: horizon,
+            allowed: "a positive number is allowed",
+        });
+    }
+    Ok(())
 }
 
 fn validate<const D: usize>(id: ParticleId, particle: &Particle<D>) -> Result<(), SetupError> {

@@ -3,6 +3,8 @@
 use std::cmp::Ordering;
 use std::cmp::Reverse;
 
+use serde::{Deserialize, Serialize};
+
 use crate::engine::ledger::Entry;
 use crate::engine::queue::{Key, Rank};
 use crate::engine::simulation::Simulation;
@@ -15,7 +17,7 @@ use crate::model::{
 use crate::particle::{Mode, ParticleId, Vector};
 
 /// An event that the policy has asked for.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 pub(super) struct Alarm<E> {
     pub(super) key: Key,
     /// Tells apart what was asked for one grain and one instant: first asked,

@@ -22,6 +22,18 @@ pub enum StoppedBy {
     Error,
 }
 
+impl StoppedBy {
+    /// Whether the run came to an end of its own, so that nothing is left to
+    /// resume.
+    #[must_use]
+    pub fn is_finished(self) -> bool {
+        match self {
+            StoppedBy::AllFrozen | StoppedBy::Time | StoppedBy::Events => true,
+            StoppedBy::Collapse | StoppedBy::Interrupted | StoppedBy::Error => false,
+        }
+    }
+}
+
 /// `summary.json`: how a run ended.
 ///
 /// Energies and the packing fraction are those of the last instant.

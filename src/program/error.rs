@@ -29,6 +29,26 @@ pub enum ProgramError {
         /// Why.
         source: io::Error,
     },
+    /// None of the checkpoints of a run can be used.
+    #[error("{folder} cannot be resumed:{reasons}\n{advice}")]
+    Unresumable {
+        /// The folder.
+        folder: String,
+        /// A line for each checkpoint.
+        reasons: String,
+        /// What to do.
+        advice: String,
+    },
+    /// A run could not be carried on with.
+    #[error(
+        "{source}\nonce that is put right, `grainfall resume {folder}` goes on from the last checkpoint"
+    )]
+    Stopped {
+        /// Why.
+        source: Box<ProgramError>,
+        /// Its folder.
+        folder: String,
+    },
     /// A file of frames can't be read.
     #[error("{file}: {source}")]
     Frames {
@@ -45,6 +65,7 @@ impl ProgramError {
     #[must_use]
     pub fn exit_code(&self) -> u8 {
         match self {
+            ProgramError::Stopped { source, .. } => source.exit_code(),
             ProgramError::Scenario(ScenarioError::Unreadable { .. })
             | ProgramError::Folder(FolderError::Io { .. })
             | ProgramError::Io { .. }
@@ -54,6 +75,7 @@ impl ProgramError {
             } => 1,
             ProgramError::Scenario(ScenarioError::Refused(_))
             | ProgramError::UnknownScenario { .. }
+            | ProgramError::Unresumable { .. }
             | ProgramError::Folder(_)
             | ProgramError::Frames { .. } => 2,
         }
