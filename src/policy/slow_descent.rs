@@ -341,7 +341,10 @@ impl<const D: usize> StatePolicy<D> for SlowDescent {
         near: &S,
         memory: &Remembered<D>,
     ) -> Result<(), String> {
-        if memory.previous_speed.is_some_and(|speed| speed.is_nan() || speed < 0.0) {
+        if memory
+            .previous_speed
+            .is_some_and(|speed| speed.is_nan() || speed < 0.0)
+        {
             return Err(format!("it remembers no speed: {memory:?}"));
         }
         let Some(asleep) = &memory.asleep else {
