@@ -208,7 +208,7 @@ fn killed_runs_go_on() {
     kills(8, 1);
 }
 
-/// The long version: `cargo test --release --test program_resume -- --ignored --nocapture`.
+/// The long version: `cargo test --test program_resume -- --ignored --nocapture`.
 #[test]
 #[ignore = "takes minutes"]
 fn runs_killed_two_hundred_times_go_on() {
