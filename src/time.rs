@@ -304,6 +304,25 @@ mod tests {
     use proptest::prelude::*;
 
     #[test]
+    fn only_instants_are_read() {
+        for time in [Time::FIRST, Time::ZERO + 1.0e-20, Time::LAST, Time::NEVER] {
+            let text = serde_json::to_string(&time).unwrap();
+            assert_eq!(serde_json::from_str::<Time>(&text).unwrap(), time);
+        }
+        let never = i64::MAX;
+        for (ticks, rest) in [
+            (0, "-0.0"),
+            (0, "1e-30"),
+            (0, "1.0"),
+            (0, "9.313225746154785e-10"),
+            (never, "1e-10"),
+        ] {
+            let text = format!("{{\"ticks\":{ticks},\"rest\":{rest}}}");
+            assert!(serde_json::from_str::<Time>(&text).is_err(), "{text}");
+        }
+    }
+
+    #[test]
     fn a_late_clock_counts_like_an_early_one() {
         let steps = [1.0e-12, 0.3, 7.25e-9, 1.0 / 3.0, 2.5e-17, 123.456];
         let (mut early, mut late) = (Time::ZERO, Time::from_units(1.0e9));

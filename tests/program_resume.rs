@@ -231,6 +231,9 @@ fn signals_save_the_state() {
         // It is being written to.
         let said = expect(place.path(), 2, &["resume", "stopped"]);
         assert!(said.contains("another grainfall process"), "{said}");
+        let again = start(1, &["--out=stopped", "--force"]);
+        let said = expect(place.path(), 2, &again);
+        assert!(said.contains("another grainfall process"), "{said}");
         kill(&running, signal);
         assert_eq!(running.wait().unwrap().code(), Some(code));
         assert_eq!(reason(&run).as_deref(), Some("interrupted"));

@@ -123,7 +123,8 @@ impl RunFolder {
     ///
     /// # Errors
     ///
-    /// As [`RunFolder::check`], and when the folder can't be made.
+    /// As [`RunFolder::check`], when a run is going on in it, and when the folder
+    /// can't be made.
     pub fn create(path: &Path, force: bool) -> Result<Self, FolderError> {
         RunFolder::check(path, force)?;
         let missing = path.ancestors().take_while(|folder| !folder.exists());
@@ -136,6 +137,11 @@ impl RunFolder {
         let failed = |file: &Path, source| FolderError::Io {
             file: file.display().to_string(),
             source,
+        };
+        // A run that goes on there is not to have its files taken away.
+        let _in_use = match folder.file("scenario.toml").is_file() {
+            true => Some(folder.lock()?),
+            false => None,
         };
         fs::create_dir_all(path).map_err(|error| failed(path, error))?;
         for name in names_in(path).map_err(|error| failed(path, error))? {
