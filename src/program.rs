@@ -1,6 +1,6 @@
 //! The command-line program.
 //!
-//! Exit codes: 0 done · 1 input or output failed · 2 the input is refused ·
+//! Exit codes: 0 done · 1 input or output, or a validation, failed · 2 the input is refused ·
 //! 3 stopped early, with the state saved · 130 and 143 stopped by a signal.
 
 mod cli;
@@ -14,6 +14,7 @@ mod progress;
 mod run;
 mod show;
 mod signals;
+mod validate;
 
 pub use error::ProgramError;
 
@@ -33,6 +34,7 @@ pub fn main() -> ExitCode {
         Command::Check(arguments) => show::check(&arguments),
         Command::Schema => show::schema(),
         Command::Draw(arguments) => draw::draw(&arguments),
+        Command::Validate(arguments) => validate::validate(&arguments),
     };
     match done {
         Ok(code) => ExitCode::from(code),
