@@ -134,8 +134,8 @@ fn checks<const D: usize>(
     references: &References,
 ) -> Result<Vec<Check>, SetupError> {
     let count = effort.pick(256, 1000, 4000);
-    let seeds = effort.pick(2, 3, 5);
-    let each = effort.pick(400, 400, 1000);
+    let seeds = effort.pick(3, 3, 5);
+    let each = effort.pick(2500, 400, 1000);
     let states = match effort {
         Effort::Short => &references.states[2..4],
         _ => references.states,
