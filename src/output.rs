@@ -1,15 +1,17 @@
 //! What a run leaves behind: a folder of plain files.
 
+mod checkpoint;
 mod events;
 mod folder;
 mod series;
 mod summary;
 mod xyz;
 
+pub use checkpoint::{Checkpoint, CheckpointError};
 pub use events::EventLog;
 pub use folder::{FolderError, RunFolder, write_atomically};
 pub use series::{Series, SeriesRow};
 pub use summary::{
-    CollapseReport, EventCounts, FractionReport, ParticleCounts, StoppedBy, Summary,
+    CollapseReport, EnergyReport, EventCounts, FractionReport, ParticleCounts, StoppedBy, Summary,
 };
 pub use xyz::{Frame, XyzError, XyzReader};

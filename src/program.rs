@@ -11,6 +11,7 @@ mod load;
 mod means;
 mod processor;
 mod progress;
+mod resume;
 mod run;
 mod show;
 mod signals;
@@ -29,6 +30,7 @@ use crate::program::cli::{Cli, Command};
 pub fn main() -> ExitCode {
     let done = match Cli::parse().command {
         Command::Run(arguments) => run::run(&arguments),
+        Command::Resume(arguments) => resume::resume(&arguments),
         Command::Presets => show::presets(),
         Command::Preset { name } => show::preset(&name),
         Command::Check(arguments) => show::check(&arguments),

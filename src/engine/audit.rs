@@ -181,6 +181,47 @@ fn hash_of<M: Model<D>, const D: usize>(
     hash.value()
 }
 
+/// Two equal simulations, one of which is saved and restored every so often,
+/// have to stay equal in all that is saved.
+fn restart<M: Model<D>, const D: usize>(
+    case: &Case<D>,
+    model: impl Fn() -> M,
+    mut through: Simulation<M, D>,
+    mut restored: Simulation<M, D>,
+) -> Result<(), String> {
+    let written = |simulation: &Simulation<M, D>| postcard::to_stdvec(&simulation.save());
+    let mut hashes = [TrajectoryHash::new(); 2];
+    let mut newcomers = case.newcomers.iter();
+    let end = through.time() + 5.0;
+    for step in 1..=case.events {
+        if step % 23 == 0
+            && let Some(newcomer) = newcomers.next()
+            && through.insert(*newcomer).is_ok() != restored.insert(*newcomer).is_ok()
+        {
+            return Err("one takes a grain that the other refuses".into());
+        }
+        if step % 5 == 0 {
+            let state = written(&restored)
+                .and_then(|bytes| postcard::from_bytes(&bytes))
+                .map_err(|error| format!("no state comes back: {error}"))?;
+            restored = Simulation::restore(model(), state)
+                .map_err(|error| format!("not restored: {error}"))?;
+        }
+        let limits = Limits {
+            time: end,
+            ..Limits::events(u64::from(step))
+        };
+        let why = through.run(&limits, &mut hashes[0]);
+        if why != restored.run(&limits, &mut hashes[1]) {
+            return Err("they stop for different reasons".into());
+        }
+    }
+    if hashes[0] != hashes[1] || written(&through) != written(&restored) {
+        return Err("saved and restored, it goes another way".into());
+    }
+    Ok(())
+}
+
 /// Runs a simulation event by event and audits it after each.
 fn audit<M: Model<D>, const D: usize>(
     case: &Case<D>,

@@ -11,6 +11,11 @@
 //! What is listed, and when, decides only how much has to be predicted: it
 //! never changes a trajectory.
 
+mod check;
+mod saved;
+
+pub(super) use saved::SavedNeighbours;
+
 use crate::engine::cells::{Cells, Found};
 use crate::model::Boundary;
 use crate::particle::Vector;

@@ -41,6 +41,26 @@ pub enum ProgramError {
     /// A system for a validation can't be set up.
     #[error("the system can't be set up: {0}")]
     SetUp(#[from] SetupError),
+    /// None of the checkpoints of a run can be used.
+    #[error("{folder} cannot be resumed:{reasons}\n{advice}")]
+    Unresumable {
+        /// The folder.
+        folder: String,
+        /// A line for each checkpoint.
+        reasons: String,
+        /// What to do.
+        advice: String,
+    },
+    /// A run could not be carried on with.
+    #[error(
+        "{source}\nonce that is put right, `grainfall resume {folder}` goes on from the last checkpoint"
+    )]
+    Stopped {
+        /// Why.
+        source: Box<ProgramError>,
+        /// Its folder.
+        folder: String,
+    },
     /// A file of frames can't be read.
     #[error("{file}: {source}")]
     Frames {
@@ -57,6 +77,7 @@ impl ProgramError {
     #[must_use]
     pub fn exit_code(&self) -> u8 {
         match self {
+            ProgramError::Stopped { source, .. } => source.exit_code(),
             ProgramError::Scenario(ScenarioError::Unreadable { .. })
             | ProgramError::Folder(FolderError::Io { .. })
             | ProgramError::Io { .. }
@@ -68,6 +89,7 @@ impl ProgramError {
             | ProgramError::UnknownScenario { .. }
             | ProgramError::UnknownSubject { .. }
             | ProgramError::SetUp(_)
+            | ProgramError::Unresumable { .. }
             | ProgramError::Folder(_)
             | ProgramError::Frames { .. } => 2,
         }
