@@ -14,9 +14,10 @@ Examples:
   grainfall run mine.toml --until 10
   grainfall resume runs/deposition-1            go on after an interruption
   grainfall draw runs/deposition-1 --time 50
+  grainfall validate --quick                    known physics, in a minute
 
 Exit codes:
-  0 done · 1 input or output failed · 2 refused input ·
+  0 done · 1 input or output, or a validation, failed · 2 refused input ·
   3 stopped early (collapse, error) with the state saved ·
   130, 143 stopped by Ctrl-C or SIGTERM, with everything written";
 
