@@ -67,7 +67,7 @@ pub(super) fn checks(effort: Effort) -> Result<Vec<Check>, SetupError> {
 }
 
 fn cooling<const D: usize>(effort: Effort, kind: &Kind) -> Result<Vec<Check>, SetupError> {
-    let seeds = effort.pick(8, 12, 200);
+    let seeds = effort.pick(5, 12, 200);
     let restitutions = match effort {
         Effort::Short => &kind.restitutions[1..2],
         _ => kind.restitutions,
