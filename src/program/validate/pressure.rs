@@ -135,7 +135,7 @@ fn checks<const D: usize>(
 ) -> Result<Vec<Check>, SetupError> {
     let count = effort.pick(256, 1000, 4000);
     let seeds = effort.pick(3, 3, 5);
-    let each = effort.pick(2000, 400, 1000);
+    let each = effort.pick(1500, 400, 1000);
     let states = match effort {
         Effort::Short => &references.states[1..2],
         _ => references.states,
