@@ -104,6 +104,9 @@ mod book {
     struct TheModel;
     #[doc = include_str!("../book/src/notation.md")]
     struct Notation;
+    #[cfg(feature = "program")]
+    #[doc = include_str!("../book/src/interrupted.md")]
+    struct InterruptedRuns;
     #[doc = include_str!("../book/src/results.md")]
     struct Results;
 }

@@ -1,5 +1,6 @@
 //! What a run leaves behind: a folder of plain files.
 
+mod audit;
 mod checkpoint;
 mod events;
 mod folder;
@@ -7,6 +8,7 @@ mod series;
 mod summary;
 mod xyz;
 
+pub use audit::{AuditReport, MissedContact};
 pub use checkpoint::{Checkpoint, CheckpointError};
 pub use events::EventLog;
 pub use folder::{FolderError, RunFolder, write_atomically};

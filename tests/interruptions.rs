@@ -223,8 +223,8 @@ struct Met {
     frozen: u32,
     /// Saved just before a grain fell asleep half-way.
     half_way: u32,
-    /// Saved just before a self-check woke a grain.
-    check_wake: u32,
+    /// How often a self-check woke a grain.
+    check_wake: u64,
     largest: usize,
 }
 
@@ -246,10 +246,10 @@ fn restart<M: Model<D> + Clone, const D: usize>(
     let mut hash = TrajectoryHash::new();
     let mut met = Met::default();
     let mut simulation = Simulation::restore(model.clone(), start.save()).unwrap();
-    let share = 0.02 * through.counts().total() as f64;
+    let share = 0.04 * through.counts().total() as f64;
     loop {
         let part: f64 = rng.random();
-        let time = simulation.time().units() + 0.05 * end * part * part;
+        let time = simulation.time().units() + 0.08 * end * part * part;
         let events = simulation.counts().total() + 1 + (share * rng.random::<f64>()) as u64;
         let limits = Limits {
             events,
@@ -271,14 +271,12 @@ fn restart<M: Model<D> + Clone, const D: usize>(
         }
         // The next event alone, to see what was about to happen.
         let sleeps = again.counts().sleep;
-        let woken = again.counts().check_wake;
         let next = Limits {
             events: again.counts().total() + 1,
             ..until(end)
         };
         again.run(&next, &mut hash);
         met.half_way += u32::from(again.counts().sleep > sleeps);
-        met.check_wake += u32::from(again.counts().check_wake > woken);
         simulation = again;
     }
     assert_eq!(hash.value(), straight.value());
@@ -288,6 +286,7 @@ fn restart<M: Model<D> + Clone, const D: usize>(
         bytes(&simulation) == bytes(&through),
         "the last states differ"
     );
+    met.check_wake = through.counts().check_wake;
     met
 }
 
@@ -369,12 +368,12 @@ fn restart_of_heaps<const D: usize>(count: usize, width: f64, end: f64) {
 
 #[test]
 fn a_heap_in_the_plane_goes_on_as_if_never_stopped() {
-    restart_of_heaps::<2>(30, 8.0, 40.0);
+    restart_of_heaps::<2>(60, 10.0, 14.0);
 }
 
 #[test]
 fn a_heap_in_space_goes_on_as_if_never_stopped() {
-    restart_of_heaps::<3>(60, 4.0, 20.0);
+    restart_of_heaps::<3>(60, 4.0, 14.0);
 }
 
 fn restart_of_gases<const D: usize>(seed: u64) {
@@ -397,12 +396,12 @@ fn restart_of_gases<const D: usize>(seed: u64) {
         match growth {
             None => {
                 let start = Simulation::new(free.clone(), grains).unwrap();
-                restart(&start, &free, 30.0, seed);
+                restart(&start, &free, 5.0, seed);
             }
             Some(rate) => {
                 let model = free.with_dynamics(Growing::new(ForceFree, rate));
                 let start = Simulation::new(model.clone(), grains).unwrap();
-                restart(&start, &model, 15.0, seed);
+                restart(&start, &model, 4.0, seed);
             }
         }
     }
@@ -425,7 +424,7 @@ fn damaged_states_are_refused() {
     let good = bytes(&simulation);
     let mut rng = seeded(5);
     let (mut unread, mut refused, mut taken) = (0, 0, 0);
-    for _ in 0..20_000 {
+    for _ in 0..6_000 {
         let mut damaged = good.clone();
         for _ in 0..1 + rng.random_range(0..3) {
             let place = rng.random_range(0..damaged.len());
@@ -448,7 +447,7 @@ fn damaged_states_are_refused() {
         }
     }
     assert!(
-        unread > 1000 && refused > 500 && taken > 500,
+        unread > 300 && refused > 150 && taken > 150,
         "{unread} {refused} {taken}"
     );
     // A state of another model.

@@ -91,7 +91,7 @@ fn reason(run: &Path) -> Option<String> {
 const RUNS: [&[&str]; 4] = [
     &[
         "deposition",
-        "--set=grains.1.rain.count=120",
+        "--set=grains.1.rain.count=80",
         "--set=parameters.elastic_speed=1e-3",
         "--set=boundaries=[{periodic={length=5}},{periodic={length=5}},\"open\"]",
         "--set=output.frames_every=2",
@@ -100,7 +100,7 @@ const RUNS: [&[&str]; 4] = [
     ],
     &[
         "one-by-one",
-        "--set=grains.1.one_by_one.count=60",
+        "--set=grains.1.one_by_one.count=40",
         "--set=boundaries=[{periodic={length=4}},{periodic={length=4}},\"open\"]",
         "--set=output.events=true",
         "--set=output.frames_every=20",
@@ -108,13 +108,13 @@ const RUNS: [&[&str]; 4] = [
     &[
         "gas-inelastic",
         "--set=grains.0.gas.count=300",
-        "--set=stop.time=60",
+        "--set=stop.time=40",
         "--set=output.events=true",
     ],
     &[
         "gas2d",
         "--set=grains.0.gas.count=200",
-        "--set=stop.time=100",
+        "--set=stop.time=60",
     ],
 ];
 
@@ -205,10 +205,10 @@ fn kills(total: u32, seed: u64) {
 
 #[test]
 fn killed_runs_go_on() {
-    kills(12, 1);
+    kills(8, 1);
 }
 
-/// The long version: `cargo test --release --test program_resume -- --ignored --nocapture`.
+/// The long version: `cargo test --test program_resume -- --ignored --nocapture`.
 #[test]
 #[ignore = "takes minutes"]
 fn runs_killed_two_hundred_times_go_on() {

@@ -16,6 +16,7 @@ fn is_of_a_run(name: &str) -> bool {
             "summary.json",
             "series.csv",
             "frames.xyz",
+            "audit.json",
             "events.csv",
             "picture.svg",
             "checkpoint",

@@ -34,6 +34,7 @@ The run folder then holds
   series.csv      counts by mode, events and energies over time
   frames.xyz      all grains at some times (extended XYZ, for OVITO)
   events.csv      every event, if output.events = true
+  audit.json      what audits have found, with --audit
   checkpoint      the state to go on from, while it is not finished
 
 An earlier run is not overwritten without --force (exit code 2). Ctrl-C ends a
@@ -57,6 +58,10 @@ is whole and of this version.";
 const CHECKPOINT_HELP: &str = "\
 Write a checkpoint at the multiples of this simulated time, in √(d/g); 0: only
 when interrupted [default: about once a minute]";
+
+const AUDIT_HELP: &str = "\
+Compare the event queue with brute force every K events; a contact that would
+have been missed ends the run (exit code 3). Writes audit.json";
 
 /// A time between checkpoints.
 fn interval(text: &str) -> Result<f64, String> {
@@ -122,6 +127,8 @@ pub(super) struct RunArguments {
     pub(super) until: Option<f64>,
     #[arg(long, value_name = "T", value_parser = interval, allow_negative_numbers = true, help = CHECKPOINT_HELP)]
     pub(super) checkpoint_every: Option<f64>,
+    #[arg(long, value_name = "K", value_parser = clap::value_parser!(u64).range(1..), help = AUDIT_HELP)]
+    pub(super) audit: Option<u64>,
     /// Overwrite an earlier run
     #[arg(long)]
     pub(super) force: bool,
@@ -138,6 +145,8 @@ pub(super) struct ResumeArguments {
     pub(super) folder: PathBuf,
     #[arg(long, value_name = "T", value_parser = interval, allow_negative_numbers = true, help = CHECKPOINT_HELP)]
     pub(super) checkpoint_every: Option<f64>,
+    #[arg(long, value_name = "K", value_parser = clap::value_parser!(u64).range(1..), help = AUDIT_HELP)]
+    pub(super) audit: Option<u64>,
     /// Show no progress, and no summary at the end
     #[arg(long, short)]
     pub(super) quiet: bool,

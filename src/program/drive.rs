@@ -1,5 +1,6 @@
 //! Carries a run through: slice by slice, with samples, signals and a summary.
 
+mod audits;
 mod files;
 mod pace;
 mod state;
@@ -15,6 +16,7 @@ use crate::error::SetupError;
 use crate::model::{Model, Observer, Occurrence, Surroundings};
 use crate::observe::TrajectoryHash;
 use crate::output::{Checkpoint, CollapseReport, FractionReport, RunFolder, StoppedBy, Summary};
+use crate::program::drive::audits::Audits;
 use crate::program::drive::files::{Files, Log, plain};
 use crate::program::drive::pace::{Cadence, Pace, Samples};
 use crate::program::drive::state::{SavedRun, Unusable};
@@ -47,6 +49,8 @@ pub(super) struct Job {
     /// Checkpoints every so much simulated time; by the clock on the wall if
     /// not given.
     pub(super) checkpoint_every: Option<f64>,
+    /// An audit every so many events.
+    pub(super) audit: Option<u64>,
     pub(super) quiet: bool,
 }
 
@@ -253,7 +257,11 @@ impl<M: Model<D>, const D: usize> Run<'_, M, D> {
         signals: &Signals,
         progress: &mut Progress,
     ) -> Result<End, ProgramError> {
-        let end = self.advance(job, signals, progress)?;
+        let mut audits = Audits::new(job.audit, self.simulation.counts().total());
+        let end = self.advance(job, signals, progress, &mut audits);
+        progress.finish();
+        audits.write(&job.folder, job.quiet)?;
+        let end = end?;
         if !end.reason.is_finished() {
             self.write_checkpoint(job)?;
         }
@@ -270,6 +278,7 @@ impl<M: Model<D>, const D: usize> Run<'_, M, D> {
         job: &Job,
         signals: &Signals,
         progress: &mut Progress,
+        audits: &mut Audits,
     ) -> Result<End, ProgramError> {
         let mut pace = Pace::new();
         let mut cadence = Cadence::new(job.checkpoint_every, self.simulation.time());
@@ -304,7 +313,9 @@ impl<M: Model<D>, const D: usize> Run<'_, M, D> {
             };
             let limits = Limits {
                 time: until,
-                events: event_limit.min(before.saturating_add(events)),
+                events: event_limit
+                    .min(before.saturating_add(events))
+                    .min(audits.next()),
                 all_frozen: self.ends_frozen(),
             };
             pace.begin();
@@ -313,6 +324,11 @@ impl<M: Model<D>, const D: usize> Run<'_, M, D> {
             let events = self.simulation.counts().total();
             if self.samples.is_idle() && events > before {
                 self.samples.wake(self.simulation.time(), events);
+            }
+            if let Some(missed) = audits.audit(&mut self.simulation) {
+                let mut end = End::new(StoppedBy::Error, 3);
+                end.error = Some(format!("a contact would have been missed: {missed}"));
+                return Ok(end);
             }
             match why {
                 StopReason::Collapse(collapse) => {

@@ -37,6 +37,7 @@ pub(super) fn resume(arguments: &ResumeArguments) -> Result<u8, ProgramError> {
         folder,
         text,
         checkpoint_every: arguments.checkpoint_every,
+        audit: arguments.audit,
         quiet: arguments.quiet,
     };
     match job.scenario.dimension {

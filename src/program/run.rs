@@ -49,6 +49,7 @@ fn begin<const D: usize>(
         folder,
         text,
         checkpoint_every: arguments.checkpoint_every,
+        audit: arguments.audit,
         quiet: arguments.quiet,
     };
     let done = start::<D>(&job, &signals);

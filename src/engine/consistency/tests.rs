@@ -207,6 +207,33 @@ fn faults_of_memories_and_of_the_policys_events_are_seen() {
 }
 
 #[test]
+fn an_audit_sees_what_is_missed() {
+    let mut heap = heap();
+    assert_eq!(heap.audit().missed, []);
+    let meeting = |heap: &Heap| {
+        let slots = heap.slots.iter();
+        let mut meeting = slots
+            .enumerate()
+            .filter(|(_, slot)| slot.contact < slot.renewal);
+        meeting.next().map(|(id, slot)| (id as u32, slot.partner))
+    };
+    let (mover, partner) = meeting(&heap).unwrap();
+    // Whoever it meets does not know of it either.
+    for id in 0..heap.slots.len() as u32 {
+        let slot = &mut heap.slots[id as usize];
+        if id == mover || partner == Partner::Particle(id) || slot.partner == partner {
+            slot.contact = Time::NEVER;
+            slot.partner = Partner::Nobody;
+        }
+    }
+    let missed = heap.audit().missed;
+    let named = missed.iter().any(|missed| {
+        missed.particle.0 == mover || missed.other.is_some_and(|other| other.0 == mover)
+    });
+    assert!(named, "{missed:?}");
+}
+
+#[test]
 #[should_panic(expected = "inconsistent at")]
 fn a_run_stops_at_a_fault() {
     let mut heap = heap();
