@@ -27,7 +27,7 @@ pub struct DoubleDouble {
 
 /// a + b exactly.
 #[inline]
-fn two_sum(a: f64, b: f64) -> (f64, f64) {
+pub(super) fn two_sum(a: f64, b: f64) -> (f64, f64) {
     let sum = a + b;
     let part = sum - a;
     (sum, (a - (sum - part)) + (b - part))
@@ -50,12 +50,30 @@ fn split(a: f64) -> (f64, f64) {
 
 /// a · b exactly.
 #[inline]
-fn two_product(a: f64, b: f64) -> (f64, f64) {
+pub(super) fn two_product(a: f64, b: f64) -> (f64, f64) {
     let product = a * b;
     let (a_high, a_low) = split(a);
     let (b_high, b_low) = split(b);
     let error = ((a_high * b_high - product) + a_high * b_low + a_low * b_high) + a_low * b_low;
     (product, error)
+}
+
+/// High and low digits of a number that is neither huge nor tiny: a
+/// [`DoubleDouble`] without the care for infinities.
+pub(super) type Pair = (f64, f64);
+
+/// The sum, right to 2⁻¹⁰⁴ of the sizes of what is added.
+#[inline]
+pub(super) fn pair_sum(a: Pair, b: Pair) -> Pair {
+    let (high, error) = two_sum(a.0, b.0);
+    quick_two_sum(high, error + (a.1 + b.1))
+}
+
+/// The product, right to 2⁻¹⁰³ of itself.
+#[inline]
+pub(super) fn pair_product(a: Pair, b: Pair) -> Pair {
+    let (high, error) = two_product(a.0, b.0);
+    quick_two_sum(high, error + (a.0 * b.1 + a.1 * b.0))
 }
 
 impl DoubleDouble {
