@@ -14,10 +14,12 @@
 //!   that root is divided out, and what is left has one degree less.
 //! - The bits of an answer depend on the two flights alone: not on the horizon,
 //!   nor on which grain is called the first.
-//! - A gap within rounding of zero, about 10⁻¹⁵ d², may be judged either way.
-//!
-//! The solvers are generic over the arithmetic: with [`DoubleDouble`] the same
-//! lines give 30 digits.
+//! - No contact is missed and none is late by more than the last digit of its
+//!   time; the numbers of the flights count as exact. Plain `f64` searches with a
+//!   polynomial that lies below the exact one. What is then within rounding is
+//!   resolved in [`DoubleDouble`] by the same lines: the solvers are generic over
+//!   the arithmetic. The bound and its proof are in the book, page "Prediction,
+//!   certified".
 
 mod descent;
 mod double_double;

@@ -278,8 +278,8 @@ fn input<const D: usize>(kind: usize, rng: &mut ChaCha8Rng) -> (Relative<D>, boo
         // Just collided.
         3 => {
             touching = true;
-            relative.velocity =
-                normal * magnitude(rng, -12.0, -1.0) + across(&normal, rng) * magnitude(rng, -6.0, 0.3);
+            relative.velocity = normal * magnitude(rng, -12.0, -1.0)
+                + across(&normal, rng) * magnitude(rng, -6.0, 0.3);
         }
         // Touching with somebody else's collision just past.
         4 => {

@@ -58,22 +58,15 @@ pub(super) fn two_product(a: f64, b: f64) -> (f64, f64) {
     (product, error)
 }
 
-/// High and low digits of a number that is neither huge nor tiny: a
-/// [`DoubleDouble`] without the care for infinities.
-pub(super) type Pair = (f64, f64);
-
-/// The sum, right to 2⁻¹⁰⁴ of the sizes of what is added.
+/// a² exactly.
 #[inline]
-pub(super) fn pair_sum(a: Pair, b: Pair) -> Pair {
-    let (high, error) = two_sum(a.0, b.0);
-    quick_two_sum(high, error + (a.1 + b.1))
-}
-
-/// The product, right to 2⁻¹⁰³ of itself.
-#[inline]
-pub(super) fn pair_product(a: Pair, b: Pair) -> Pair {
-    let (high, error) = two_product(a.0, b.0);
-    quick_two_sum(high, error + (a.0 * b.1 + a.1 * b.0))
+pub(super) fn two_square(a: f64) -> (f64, f64) {
+    let square = a * a;
+    let (high, low) = split(a);
+    (
+        square,
+        ((high * high - square) + 2.0 * (high * low)) + low * low,
+    )
 }
 
 impl DoubleDouble {

@@ -4,7 +4,7 @@
 //! computed with twice the digits, from the flights themselves, and Newton's
 //! method takes the time from a certain lower bound to the root.
 
-use super::double_double::{Pair, pair_product, pair_sum, two_product, two_sum};
+use super::double_double::{two_product, two_square, two_sum};
 use super::gap::{CERTAIN, GapPolynomial};
 use crate::model::{Approach, PolynomialFlight};
 
@@ -13,8 +13,25 @@ const MOST_STEPS: usize = 16;
 /// What is left of a step may change the time by an eighth of its last digit.
 const LAST_DIGIT: f64 = 0.125 * f64::EPSILON;
 
-/// The gap at a time as high and low digits: f, or if they have just collided
-/// f/t with f(0) counted as zero.
+/// A sum of many terms of which the leading ones cancel: exact leading digits,
+/// everything else in one number.
+#[derive(Clone, Copy)]
+struct Sum {
+    high: f64,
+    low: f64,
+}
+
+impl Sum {
+    #[inline]
+    fn add(&mut self, (high, low): (f64, f64)) {
+        let (sum, error) = two_sum(self.high, high);
+        self.high = sum;
+        self.low += error + low;
+    }
+}
+
+/// The gap at a time: f, or if they have just collided f/t with f(0) counted as
+/// zero. Right to 2⁻⁹⁸ of its size.
 #[inline]
 fn residual<const D: usize, F: PolynomialFlight<D>>(
     approach: &Approach<D, F>,
@@ -25,52 +42,67 @@ fn residual<const D: usize, F: PolynomialFlight<D>>(
     let (from, to) = (first.position(0.0), second.position(0.0));
     let (before, after) = (first.velocity(0.0), second.velocity(0.0));
     let (distance, growth, touching) = (approach.distance, approach.growth, approach.touching);
-    let mut total: Pair = (0.0, 0.0);
-    for axis in 0..D {
-        let difference = two_sum(to[axis], -from[axis]);
-        let place = pair_sum(difference, (approach.shift[axis], 0.0));
-        // Mean velocity up to t.
-        let mut speed = two_sum(after[axis], -before[axis]);
-        if bent {
-            let pull = two_sum(second.acceleration()[axis], -first.acceleration()[axis]);
-            let gained = two_product(0.5 * t, pull.0);
-            speed = pair_sum(speed, (gained.0, gained.1 + 0.5 * t * pull.1));
-        }
-        let way = two_product(t, speed.0);
-        let way = (way.0, way.1 + t * speed.1);
-        let term = if touching {
-            let sum = pair_sum((2.0 * place.0, 2.0 * place.1), way);
-            pair_product(speed, sum)
-        } else {
-            let sum = pair_sum(place, way);
-            pair_product(sum, sum)
-        };
-        total = pair_sum(total, term);
-    }
-    let contact = if growth == 0.0 {
-        if touching {
-            (0.0, 0.0)
-        } else {
-            two_product(distance, distance)
-        }
-    } else if touching {
-        let sum = pair_sum(two_product(growth, t), (2.0 * distance, 0.0));
-        pair_product((growth, 0.0), sum)
-    } else {
-        let sum = pair_sum(two_product(growth, t), (distance, 0.0));
-        pair_product(sum, sum)
+    let mut total = Sum {
+        high: 0.0,
+        low: 0.0,
     };
-    let rest = pair_sum(total, (-contact.0, -contact.1));
-    rest.0 + rest.1
+    for axis in 0..D {
+        // Leading digits in each first part, what they leave in the second.
+        let (apart, rest) = two_sum(to[axis], -from[axis]);
+        let (place, place_rest) = two_sum(apart, approach.shift[axis]);
+        // The rest may be of digits far above those of so short a sum.
+        let (place, place_rest) = two_sum(place, place_rest + rest);
+        // Mean velocity up to t.
+        let (mut speed, mut speed_rest) = two_sum(after[axis], -before[axis]);
+        if bent {
+            let (pull, rest) = two_sum(second.acceleration()[axis], -first.acceleration()[axis]);
+            if pull != 0.0 {
+                let (gained, gained_rest) = two_product(0.5 * t, pull);
+                let (sum, sum_rest) = two_sum(speed, gained);
+                speed = sum;
+                speed_rest += sum_rest + gained_rest + 0.5 * t * rest;
+            }
+        }
+        let (way, mut way_rest) = two_product(t, speed);
+        way_rest += t * speed_rest;
+        if touching {
+            let (sum, rest) = two_sum(2.0 * place, way);
+            let rest = rest + (2.0 * place_rest + way_rest);
+            let (product, error) = two_product(speed, sum);
+            total.add((product, error + (speed * rest + speed_rest * sum)));
+        } else {
+            let (sum, rest) = two_sum(place, way);
+            let rest = rest + (place_rest + way_rest);
+            let (square, error) = two_square(sum);
+            total.add((square, error + 2.0 * sum * rest));
+        }
+    }
+    if growth == 0.0 {
+        if !touching {
+            let (square, error) = two_square(distance);
+            total.add((-square, -error));
+        }
+    } else {
+        let (grown, grown_rest) = two_product(growth, t);
+        if touching {
+            let (sum, rest) = two_sum(grown, 2.0 * distance);
+            let (product, error) = two_product(growth, sum);
+            total.add((-product, -error - growth * (rest + grown_rest)));
+        } else {
+            let (sum, rest) = two_sum(grown, distance);
+            let (square, error) = two_square(sum);
+            total.add((-square, -error - 2.0 * sum * (rest + grown_rest)));
+        }
+    }
+    total.high + total.low
 }
 
 /// The root next to `from`, up to which the gap is certainly positive and where
 /// it is nearly zero; nothing if it is not certain that there is one, and that
 /// it is the next.
 ///
-/// It is if over twice the Newton step the slope can't change by more than a
-/// quarter: then f falls all the way, and the step ends within a tenth of itself
-/// of the only root.
+/// It is if over twice the way to it the slope can't change by more than a
+/// quarter: then f falls all the way to the only root.
 #[inline]
 pub(super) fn refine<const D: usize, F: PolynomialFlight<D>>(
     approach: &Approach<D, F>,
@@ -80,25 +112,35 @@ pub(super) fn refine<const D: usize, F: PolynomialFlight<D>>(
 ) -> Option<f64> {
     let [_, _, c2, c3, c4] = gap.coefficients;
     let touching = approach.touching;
-    let mut t = from;
     let unit = CERTAIN * 0.5 * f64::EPSILON;
     let margin = if touching {
         let [e1, e2] = gap.margins();
-        e1 + t * (e2 + unit * c4 * t * t)
+        e1 + from * (e2 + unit * c4 * from * from)
     } else {
-        unit * gap.size(t)
+        unit * gap.size(from)
     };
-    for _ in 0..MOST_STEPS {
-        let value = residual(approach, bent, t);
-        let slope = if touching {
+    let slope_at = |t: f64| {
+        if touching {
             c2 + t * (2.0 * c3 + t * (3.0 * c4))
         } else {
             gap.slope(t)
-        };
+        }
+    };
+    // Of the slope's digits at least 12 are right after a collision, 26 else.
+    let doubt = if touching { 1.0 / 4096.0 } else { 1.5e-8 };
+    let mut t = from;
+    let mut slope = slope_at(t);
+    for count in 0..MOST_STEPS {
         let falling = slope < 0.0;
         if !falling {
             return None;
         }
+        if count == 0 && from > 0.0 {
+            // Where the lowered gap is zero this one is about as large as the
+            // margin.
+            t += margin / -slope;
+        }
+        let value = residual(approach, bent, t);
         if t == 0.0 && value <= 0.0 {
             // A contact that began at or before the start.
             let bend = gap.motion_scale + c2.abs();
@@ -106,25 +148,25 @@ pub(super) fn refine<const D: usize, F: PolynomialFlight<D>>(
             return certain.then_some(0.0);
         }
         let step = value / -slope;
-        let reach = step.abs().max(margin / -slope);
-        let end = t + 2.0 * reach;
+        let reach = (t - from) + step.abs().max(margin / -slope);
+        let end = from + 2.0 * reach;
         let bend = if touching {
             c3.abs() + 3.0 * c4 * end
         } else {
             gap.motion_scale + c2.abs() + end * (3.0 * c3.abs() + 6.0 * c4 * end)
         };
         let certain = 16.0 * reach * bend <= -slope;
-        if !certain || (touching && reach > t / 4096.0) {
+        if !certain || (touching && reach > from / 4096.0) {
             return None;
         }
         let next = t + step;
-        // Of the slope's digits at least 12 are right after a collision, 26 else.
-        let doubt = if touching { 1.0 / 4096.0 } else { 1.5e-8 };
-        let rest = step.abs() * (step.abs() * bend / -slope + doubt);
+        // The slope may be that of `from`.
+        let rest = step.abs() * (2.0 * reach * bend / -slope + doubt);
         if next == t || rest <= LAST_DIGIT * next {
             return (next >= 0.0).then_some(next);
         }
         t = next;
+        slope = slope_at(t);
     }
     None
 }

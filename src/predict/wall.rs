@@ -115,7 +115,8 @@ fn settle_plane<const D: usize, F: PolynomialFlight<D>, W: Wall<D>>(
 /// Far from it a grain cannot touch before it has covered the gap. Near it the
 /// gap φ obeys φ″ ≥ −B, with B from the wall's curvature and the accelerations, and
 /// φ + φ′ s − B s²/2 lies below it. The longer of the two steps is taken; neither
-/// passes a contact.
+/// passes a contact, if the wall's distances are right to [`ROUNDING`]: φ counts
+/// as less by as much. Contact is where it is twice that or less, and closing.
 pub(super) fn general<const D: usize, F: PolynomialFlight<D>, W: Wall<D>>(
     encounter: &Encounter<'_, D, F, W>,
     curvature: f64,
@@ -144,11 +145,13 @@ pub(super) fn general<const D: usize, F: PolynomialFlight<D>, W: Wall<D>>(
         } else {
             distance - radius
         };
-        if gap <= rounding && opening < 0.0 {
+        if gap <= 2.0 * rounding && opening < 0.0 {
             return Forecast::Contact(t);
         }
+        // So much there is of it at least.
+        let sure = gap - rounding;
         let speed = velocity.norm() + wall_speed;
-        let mut advance = covered(gap, speed + growth.max(0.0), acceleration);
+        let mut advance = covered(sure, speed + growth.max(0.0), acceleration);
         // The curvature is known out to one diameter; beyond 1 d it may grow
         // inwards like that of parallel surfaces.
         let known = encounter.radius.max(0.5) * 2.0;
@@ -187,7 +190,7 @@ fn minorant_step(gap: f64, opening: f64, bound: f64, rounding: f64, pass: f64) -
         return if gap <= rounding { 1.0e-6 * pass } else { 0.0 };
     }
     if opening < 0.0 {
-        return first_root(gap, opening, -0.5 * bound);
+        return first_root(gap - rounding, opening, -0.5 * bound);
     }
     // Over a time so short that curvature changes the gap by less than its
     // rounding, an opening gap stays open.
@@ -196,7 +199,7 @@ fn minorant_step(gap: f64, opening: f64, bound: f64, rounding: f64, pass: f64) -
         // Overlapping and opening: up to where it might begin to close.
         opening / bound
     } else {
-        first_root(gap.max(0.0), opening, -0.5 * bound)
+        first_root((gap - rounding).max(0.0), opening, -0.5 * bound)
     };
     step.max(least)
 }

@@ -71,6 +71,17 @@ pub(crate) enum Verdict {
 }
 
 impl Exact {
+    /// These coefficients, the first plus another number.
+    pub(crate) fn of_coefficients(c: [f64; 5], lift: f64) -> Self {
+        let scale = scale_of(c.into_iter().chain([lift]));
+        let mut coefficients = c.map(|c| at_scale(c, scale));
+        coefficients[0] += at_scale(lift, scale);
+        Exact {
+            coefficients,
+            scale,
+        }
+    }
+
     /// The squared gap of two flights; f(0) is zero by definition if they touch.
     pub(crate) fn pair<const D: usize, F: PolynomialFlight<D>>(approach: &Approach<D, F>) -> Self {
         let Approach { first, second, .. } = approach;
