@@ -1,6 +1,6 @@
 //! The command-line program.
 //!
-//! Exit codes: 0 done · 1 input or output failed · 2 the input is refused ·
+//! Exit codes: 0 done · 1 input or output, or a validation, failed · 2 the input is refused ·
 //! 3 stopped early, with the state saved · 130 and 143 stopped by a signal.
 
 mod cli;
@@ -15,9 +15,11 @@ mod resume;
 mod run;
 mod show;
 mod signals;
+mod validate;
 
 pub use error::ProgramError;
 
+use std::io::{self, Write};
 use std::process::ExitCode;
 
 use clap::Parser;
@@ -35,11 +37,13 @@ pub fn main() -> ExitCode {
         Command::Check(arguments) => show::check(&arguments),
         Command::Schema => show::schema(),
         Command::Draw(arguments) => draw::draw(&arguments),
+        Command::Validate(arguments) => validate::validate(&arguments),
     };
     match done {
         Ok(code) => ExitCode::from(code),
         Err(error) => {
-            eprintln!("error: {error}");
+            // Nobody may be listening; the exit code says it too.
+            let _ = writeln!(io::stderr(), "error: {error}");
             ExitCode::from(error.exit_code())
         }
     }

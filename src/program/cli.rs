@@ -14,9 +14,10 @@ Examples:
   grainfall run mine.toml --until 10
   grainfall resume runs/deposition-1            go on after an interruption
   grainfall draw runs/deposition-1 --time 50
+  grainfall validate --quick                    known physics, in a minute
 
 Exit codes:
-  0 done · 1 input or output failed · 2 refused input ·
+  0 done · 1 input or output, or a validation, failed · 2 refused input ·
   3 stopped early (collapse, error) with the state saved ·
   130, 143 stopped by Ctrl-C or SIGTERM, with everything written";
 
@@ -104,6 +105,8 @@ pub(super) enum Command {
     Schema,
     /// Draw the grains of a run as SVG
     Draw(DrawArguments),
+    /// Measure known physics and say whether it comes out right
+    Validate(ValidateArguments),
 }
 
 #[derive(Debug, Args)]
@@ -174,5 +177,27 @@ pub(super) struct DrawArguments {
     pub(super) time: Option<f64>,
     /// Where to write [default: picture.svg beside the frames]
     #[arg(long, value_name = "FILE.svg")]
+    pub(super) out: Option<PathBuf>,
+}
+
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Examples:
+  grainfall validate --quick
+  grainfall validate
+  grainfall validate spheres cooling --out results.json
+
+Subjects: spheres, disks, maxwell, cooling, barometer, bounces, diffusion.
+What is allowed was fixed beforehand: four standard errors and the accuracy of
+the reference. The exit code is 1 if anything fails.")]
+pub(super) struct ValidateArguments {
+    /// Which subjects [default: all]
+    #[arg(value_name = "SUBJECT")]
+    pub(super) subjects: Vec<String>,
+    /// Smaller systems and fewer seeds, for about a minute
+    #[arg(long)]
+    pub(super) quick: bool,
+    /// Write the results to this file too, as JSON
+    #[arg(long, value_name = "FILE.json")]
     pub(super) out: Option<PathBuf>,
 }

@@ -1,5 +1,6 @@
 use std::io;
 
+use crate::error::SetupError;
 use crate::output::{FolderError, XyzError};
 use crate::scenario::{Refusal, ScenarioError};
 
@@ -29,6 +30,17 @@ pub enum ProgramError {
         /// Why.
         source: io::Error,
     },
+    /// There is no subject of validation of this name.
+    #[error("there is no subject `{name}` to validate; there are {known}")]
+    UnknownSubject {
+        /// The name.
+        name: String,
+        /// Those that there are.
+        known: String,
+    },
+    /// A system for a validation can't be set up.
+    #[error("the system can't be set up: {0}")]
+    SetUp(#[from] SetupError),
     /// None of the checkpoints of a run can be used.
     #[error("{folder} cannot be resumed:{reasons}\n{advice}")]
     Unresumable {
@@ -75,6 +87,8 @@ impl ProgramError {
             } => 1,
             ProgramError::Scenario(ScenarioError::Refused(_))
             | ProgramError::UnknownScenario { .. }
+            | ProgramError::UnknownSubject { .. }
+            | ProgramError::SetUp(_)
             | ProgramError::Unresumable { .. }
             | ProgramError::Folder(_)
             | ProgramError::Frames { .. } => 2,
