@@ -142,13 +142,14 @@ fn kill(running: &Child, signal: &str) {
     assert!(sent.unwrap().success());
 }
 
-/// Starts a run, kills it over and over at random moments, and lets it come to
+/// Starts a run, kills it up to `most` times at random moments, and lets it come to
 /// its end; says how often it was killed, and how often while it ran.
 fn kill_and_resume(
     folder: &Path,
     number: usize,
     every: &'static str,
     took: Duration,
+    most: u32,
     rng: &mut ChaCha8Rng,
 ) -> u32 {
     let begin = start(number, &["--out=killed", "--force", every]);
@@ -162,7 +163,7 @@ fn kill_and_resume(
             &begin
         };
         let mut running = command(folder, arguments).spawn().unwrap();
-        if kills < 12 {
+        if kills < most {
             // Moments near the start count as much as those late in the run.
             let part: f64 = rng.random();
             std::thread::sleep(took.mul_f64(0.7 * part * part));
@@ -189,10 +190,11 @@ fn kills(total: u32, seed: u64) {
     let mut rng = seeded(seed);
     let mut killed = 0;
     let mut rounds = 0;
-    while killed < total {
+    let most = (total / RUNS.len() as u32).clamp(1, 12);
+    while killed < total || rounds < RUNS.len() {
         let number = rounds % RUNS.len();
         let every = ["--checkpoint-every=0.7", "--checkpoint-every=5"][rounds / RUNS.len() % 2];
-        killed += kill_and_resume(place.path(), number, every, whole[number], &mut rng);
+        killed += kill_and_resume(place.path(), number, every, whole[number], most, &mut rng);
         assert_same(
             &place.path().join(number.to_string()),
             &place.path().join("killed"),
