@@ -20,9 +20,9 @@ use grainfall::setup::Sizes;
 use grainfall::{Particle, Time, Vector};
 
 const EQUAL: Sizes = Sizes::Equal { diameter: 1.0 };
-const DEPOSITION: &str = "181d5ea391918572";
-const HEAP: &str = "b88e1f5771c7b1bc";
-const GAS: &str = "53f08db121ef88b9";
+const DEPOSITION: &str = "1b112030546aab83";
+const HEAP: &str = "03114e4d03674a62";
+const GAS: &str = "823e546f9e0a7433";
 
 /// A deposition in space.
 fn deposition() -> (Heavy<SlowDescent, 3>, Vec<Particle<3>>) {

@@ -105,6 +105,28 @@ fn a_deposition_leaves_a_folder() {
         ),
         ("kinetic_energy", &[]),
         ("potential_energy", &[]),
+        (
+            "energy_ledger",
+            &[
+                "at_start",
+                "at_end",
+                "pair",
+                "frozen",
+                "wake",
+                "wall",
+                "sleep",
+                "given_back",
+                "fall",
+                "guard",
+                "moving",
+                "growth",
+                "crossing",
+                "inserted",
+                "sum",
+                "relative_error",
+                "elastic_spared",
+            ],
+        ),
         ("packing_fraction", &["value", "from", "to"]),
         ("mean_normal", &[]),
         ("max_overlap", &[]),
@@ -668,4 +690,23 @@ fn a_run_in_which_nothing_happens_ends() {
     assert!(rows(&run.join("series.csv")).len() < 2000);
     let told = summary(&run);
     assert_eq!(told["events"]["total"], 0);
+}
+
+#[test]
+fn an_audited_run_is_the_same_run() {
+    let place = place();
+    let plain = small(place.path(), &["--out", "plain"]);
+    let audited = small(place.path(), &["--out", "audited", "--audit", "500"]);
+    assert_eq!(plain["trajectory_hash"], audited["trajectory_hash"]);
+    for file in ["series.csv", "frames.xyz", "scenario.toml"] {
+        let of = |run: &str| fs::read(place.path().join(run).join(file)).unwrap();
+        assert!(of("plain") == of("audited"), "{file} differs");
+    }
+    let text = fs::read_to_string(place.path().join("audited/audit.json")).unwrap();
+    let found: Value = serde_json::from_str(&text).unwrap();
+    assert_eq!(found["missed"], Value::Array(Vec::new()));
+    let events = audited["events"]["total"].as_u64().unwrap();
+    assert_eq!(found["audits"], events / 500);
+    assert!(found["predicted"].as_u64().unwrap() > 1000);
+    assert!(found["deepest_overlap"].as_f64().unwrap() < 1.0e-12);
 }

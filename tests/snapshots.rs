@@ -163,14 +163,14 @@ fn work_of_a_deposition() {
     let mut simulation = Simulation::new(model, rain_on_base::<3>(1, 200, 6.0, EQUAL)).unwrap();
     simulation.run(&Limits::all_frozen(), &mut ());
     insta::assert_snapshot!(work(simulation.counts()), @r"
-    pair 85800
-    frozen 256000
-    wake 7680
-    sleep 7880
+    pair 86500
+    frozen 278000
+    wake 7450
+    sleep 7650
     wall 0
-    elastic 187000
+    elastic 215000
     transfer 6590
-    guard 736
+    guard 536
     ");
 }
 
@@ -186,7 +186,7 @@ fn work_of_a_gas() {
     sleep 0
     wall 0
     elastic 0
-    transfer 20800
+    transfer 20700
     guard 0
     ");
 }
