@@ -14,25 +14,30 @@
 //!   that root is divided out, and what is left has one degree less.
 //! - The bits of an answer depend on the two flights alone: not on the horizon,
 //!   nor on which grain is called the first.
-//! - A gap within rounding of zero, about 10⁻¹⁵ d², may be judged either way.
-//!
-//! The solvers are generic over the arithmetic: with [`DoubleDouble`] the same
-//! lines give 30 digits.
+//! - No contact is missed and none is late by more than the last digit of its
+//!   time; the numbers of the flights count as exact. Plain `f64` searches with a
+//!   polynomial that lies below the exact one. What is then within rounding is
+//!   resolved in [`DoubleDouble`] by the same lines: the solvers are generic over
+//!   the arithmetic. The bound and its proof are in the book, page "Prediction,
+//!   certified".
 
 mod descent;
 mod double_double;
 mod gap;
+mod lead;
 mod real;
+mod refine;
 mod scale;
 mod wall;
 
 pub use descent::{Descent, cubic_descent, quadratic_descent, quartic_descent};
 pub use double_double::DoubleDouble;
-pub use gap::{GapPolynomial, Relative};
+pub use gap::{CERTAIN, GapPolynomial, Relative};
 pub use real::Real;
 
 use crate::model::{Approach, Encounter, Forecast, PolynomialFlight, Predictor, Shape, Wall};
 use crate::particle::Vector;
+use lead::Lead;
 
 /// Predicts contacts of flights whose positions are polynomials of time, of
 /// degree two at most, with each other and with any wall.
@@ -71,26 +76,10 @@ pub struct Polynomial;
 impl<const D: usize, F: PolynomialFlight<D>> Predictor<D, F> for Polynomial {
     #[inline]
     fn pair(&self, approach: &Approach<D, F>) -> Forecast {
-        let Approach {
-            touching, horizon, ..
-        } = *approach;
-        let relative = Relative::of(approach);
-        let bent = F::ACCELERATES && relative.acceleration != Vector::<D>::zeros();
-        let gap = if bent {
-            GapPolynomial::new(&relative)
-        } else {
-            GapPolynomial::without_acceleration(&relative)
-        };
-        if !touching && gap.is_clear(horizon) {
-            return Forecast::Never;
-        }
-        if bent {
-            settle_quartic(&relative, &gap, touching, horizon)
-        } else {
-            settle_quadratic(&relative, &gap, touching, horizon)
-        }
+        pair(approach).0
     }
 
+    #[inline]
     fn wall<W: Wall<D>>(&self, encounter: &Encounter<'_, D, F, W>) -> Forecast {
         match encounter.wall.shape() {
             Shape::Plane { normal, offset } => wall::plane(encounter, &normal, offset),
@@ -113,41 +102,98 @@ pub fn first_contact<N: Real, const D: usize>(
     touching: bool,
     horizon: f64,
 ) -> Descent<N> {
-    let horizon = N::from_f64(horizon);
-    if relative.acceleration == Vector::<D>::zeros() {
-        let gap = GapPolynomial::without_acceleration(relative);
-        let [c0, c1, c2, ..] = gap.coefficients;
-        quadratic_descent([c0, c1, c2], touching, horizon)
+    let gap = if relative.acceleration == Vector::<D>::zeros() {
+        GapPolynomial::without_acceleration(relative)
     } else {
-        quartic_descent(&GapPolynomial::new(relative), touching, horizon)
+        GapPolynomial::new(relative)
+    };
+    descent(&gap, touching, N::from_f64(horizon))
+}
+
+fn descent<N: Real>(gap: &GapPolynomial<N>, touching: bool, horizon: N) -> Descent<N> {
+    let [c0, c1, c2, _, c4] = gap.coefficients;
+    if c4 > N::ZERO {
+        quartic_descent(gap, touching, horizon)
+    } else {
+        quadratic_descent([c0, c1, c2], touching, horizon)
     }
+}
+
+/// By which arithmetic an answer was found.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Arithmetic {
+    /// `f64` was certain.
+    Plain,
+    /// It was not: a sign was within rounding.
+    Wide,
+}
+
+/// What [`Polynomial`] answers for two grains, and which arithmetic was needed.
+#[inline]
+pub fn pair<const D: usize, F: PolynomialFlight<D>>(
+    approach: &Approach<D, F>,
+) -> (Forecast, Arithmetic) {
+    let Approach {
+        touching, horizon, ..
+    } = *approach;
+    let relative = Relative::of(approach);
+    let bent = F::ACCELERATES && relative.acceleration != Vector::<D>::zeros();
+    let mut gap = if bent {
+        GapPolynomial::new(&relative)
+    } else {
+        GapPolynomial::without_acceleration(&relative)
+    };
+    gap.place_scale += approach.shift.norm_squared() / 64.0;
+    if scale::is_extreme(&gap, bent) {
+        let forecast = scale::first_contact(&relative, touching, horizon);
+        return (forecast, Arithmetic::Wide);
+    }
+    let low = gap.lowered();
+    if !touching && low.is_clear(horizon) {
+        return (Forecast::Never, Arithmetic::Plain);
+    }
+    settle(approach, &gap, &low, bent)
 }
 
 #[inline(never)]
-fn settle_quartic<const D: usize>(
-    relative: &Relative<D>,
+fn settle<const D: usize, F: PolynomialFlight<D>>(
+    approach: &Approach<D, F>,
     gap: &GapPolynomial<f64>,
-    touching: bool,
-    horizon: f64,
-) -> Forecast {
-    if scale::is_extreme(gap, true) {
-        return scale::first_contact(relative, touching, horizon);
-    }
-    forecast(quartic_descent(gap, touching, horizon))
+    low: &GapPolynomial<f64>,
+    bent: bool,
+) -> (Forecast, Arithmetic) {
+    let forecast = match lead::lead(gap, low, approach.touching, bent, approach.horizon) {
+        Lead::Never => Forecast::Never,
+        Lead::Now => Forecast::Contact(0.0),
+        Lead::Until(time) => match refine::refine(approach, gap, bent, time) {
+            Some(contact) => Forecast::Contact(contact),
+            None => return (settle_wide(approach), Arithmetic::Wide),
+        },
+        Lead::Unsure => return (settle_wide(approach), Arithmetic::Wide),
+    };
+    (forecast, Arithmetic::Plain)
 }
 
-#[inline]
-fn settle_quadratic<const D: usize>(
-    relative: &Relative<D>,
-    gap: &GapPolynomial<f64>,
-    touching: bool,
-    horizon: f64,
-) -> Forecast {
-    if scale::is_extreme(gap, false) {
-        return scale::first_contact(relative, touching, horizon);
+/// The same question in double-double.
+#[cold]
+#[inline(never)]
+fn settle_wide<const D: usize, F: PolynomialFlight<D>>(approach: &Approach<D, F>) -> Forecast {
+    let gap = GapPolynomial::<DoubleDouble>::between(approach);
+    // A contact that only rounds to the horizon is not hidden by it.
+    let horizon = approach.horizon.next_up();
+    forecast(rounded(descent(
+        &gap,
+        approach.touching,
+        DoubleDouble::from_f64(horizon),
+    )))
+}
+
+fn rounded(descent: Descent<DoubleDouble>) -> Descent<f64> {
+    match descent {
+        Descent::Never => Descent::Never,
+        Descent::At(time) => Descent::At(time.to_f64()),
+        Descent::NotBefore(time) => Descent::NotBefore(time.to_f64()),
     }
-    let [c0, c1, c2, ..] = gap.coefficients;
-    forecast(quadratic_descent([c0, c1, c2], touching, horizon))
 }
 
 #[inline]

@@ -3,6 +3,11 @@
 //! derivatives; the contact is the left end of the first stretch on which f is
 //! not positive and f′ is negative.
 
+#[path = "common/certified.rs"]
+mod certified;
+#[path = "common/exact.rs"]
+mod exact;
+
 use grainfall::Vector;
 use grainfall::dynamics::{Parabola, Straight};
 use grainfall::model::{Approach, Forecast, PolynomialFlight, Predictor};
@@ -228,6 +233,17 @@ fn direction<const D: usize>(rng: &mut impl Rng) -> Vector<D> {
     }
 }
 
+/// A unit vector across another.
+fn across<const D: usize>(normal: &Vector<D>, rng: &mut impl Rng) -> Vector<D> {
+    loop {
+        let v = direction::<D>(rng);
+        let v = v - normal * normal.dot(&v);
+        if v.norm() > 0.1 {
+            break v / v.norm();
+        }
+    }
+}
+
 /// An input of one of the kinds that simulations and bad luck produce.
 fn input<const D: usize>(kind: usize, rng: &mut ChaCha8Rng) -> (Relative<D>, bool) {
     let up = Vector::<D>::from_fn(|axis, _| if axis + 1 == D { 1.0 } else { 0.0 });
@@ -239,14 +255,6 @@ fn input<const D: usize>(kind: usize, rng: &mut ChaCha8Rng) -> (Relative<D>, boo
         acceleration: up,
         distance,
         growth: 0.0,
-    };
-    // A unit vector across the normal.
-    let across = |rng: &mut ChaCha8Rng| loop {
-        let v = direction::<D>(rng);
-        let v = v - normal * normal.dot(&v);
-        if v.norm() > 0.1 {
-            break v / v.norm();
-        }
     };
     let mut touching = false;
     match kind {
@@ -262,7 +270,7 @@ fn input<const D: usize>(kind: usize, rng: &mut ChaCha8Rng) -> (Relative<D>, boo
         2 => {
             let t = magnitude(rng, -3.0, 0.5);
             let hair = magnitude(rng, -17.0, -10.0) * if rng.random() { 1.0 } else { -1.0 };
-            let speed = across(rng) * magnitude(rng, -1.0, 0.5);
+            let speed = across(&normal, rng) * magnitude(rng, -1.0, 0.5);
             let at = normal * (distance * (1.0 + hair));
             relative.velocity = speed - up * t;
             relative.offset = at - speed * t + up * (0.5 * t * t);
@@ -270,8 +278,8 @@ fn input<const D: usize>(kind: usize, rng: &mut ChaCha8Rng) -> (Relative<D>, boo
         // Just collided.
         3 => {
             touching = true;
-            relative.velocity =
-                normal * magnitude(rng, -12.0, -1.0) + across(rng) * magnitude(rng, -6.0, 0.3);
+            relative.velocity = normal * magnitude(rng, -12.0, -1.0)
+                + across(&normal, rng) * magnitude(rng, -6.0, 0.3);
         }
         // Touching with somebody else's collision just past.
         4 => {
@@ -279,7 +287,7 @@ fn input<const D: usize>(kind: usize, rng: &mut ChaCha8Rng) -> (Relative<D>, boo
             relative.offset *= 1.0 + hair;
             let sign = if rng.random() { 1.0 } else { -1.0 };
             relative.velocity = normal * (sign * magnitude(rng, -18.0, -2.0))
-                + across(rng) * magnitude(rng, -6.0, 0.3);
+                + across(&normal, rng) * magnitude(rng, -6.0, 0.3);
         }
         // Overlapping, by up to a lot.
         5 => {

@@ -2,6 +2,11 @@
 //! exit code 2, and nothing written.
 #![cfg(feature = "program")]
 
+#[path = "common/bad_input.rs"]
+mod bad_input;
+#[path = "common/mutate.rs"]
+mod mutate;
+
 use std::path::Path;
 use std::process::{Command, Output};
 

@@ -10,13 +10,19 @@ const FINEST: f64 = 6.0;
 /// Keeps the spheres of which some point can be seen: those that are the
 /// nearest at some point of a fine grid.
 pub(super) fn keep_visible(shapes: &mut Vec<Shape>, width: f64, height: f64) {
+    // Coordinates at the ends of what a number can hold have no picture.
+    let drawable = width > 0.0 && height > 0.0 && width * height < f64::INFINITY;
+    if !drawable {
+        return;
+    }
     let smallest = shapes
         .iter()
         .map(|shape| shape.radius)
         .fold(f64::INFINITY, f64::min);
     let wanted = FINEST / smallest;
     let affordable = (MOST_POINTS / (width * height)).sqrt();
-    let finely = wanted.min(affordable);
+    // A picture as thin as a hair would else have more rows than can be counted.
+    let finely = wanted.min(affordable).min(MOST_POINTS / width.max(height));
     let columns = (width * finely).ceil().max(1.0) as usize;
     let rows = (height * finely).ceil().max(1.0) as usize;
     let mut nearest: Vec<Option<(f64, usize)>> = vec![None; columns * rows];

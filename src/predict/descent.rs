@@ -220,7 +220,7 @@ fn concave_root<N: Real>(gap: &GapPolynomial<N>, low: N, guess: N, high: N) -> N
 }
 
 /// Minorant steps from `from`, up to which there is no contact and where f ≥ 0.
-fn by_minorants<N: Real>(gap: &GapPolynomial<N>, from: N, horizon: N) -> Descent<N> {
+pub(super) fn by_minorants<N: Real>(gap: &GapPolynomial<N>, from: N, horizon: N) -> Descent<N> {
     let zero = N::ZERO;
     let [_, _, _, c3, c4] = gap.coefficients;
     // Where h is least.

@@ -27,7 +27,7 @@ pub struct DoubleDouble {
 
 /// a + b exactly.
 #[inline]
-fn two_sum(a: f64, b: f64) -> (f64, f64) {
+pub(super) fn two_sum(a: f64, b: f64) -> (f64, f64) {
     let sum = a + b;
     let part = sum - a;
     (sum, (a - (sum - part)) + (b - part))
@@ -50,12 +50,23 @@ fn split(a: f64) -> (f64, f64) {
 
 /// a · b exactly.
 #[inline]
-fn two_product(a: f64, b: f64) -> (f64, f64) {
+pub(super) fn two_product(a: f64, b: f64) -> (f64, f64) {
     let product = a * b;
     let (a_high, a_low) = split(a);
     let (b_high, b_low) = split(b);
     let error = ((a_high * b_high - product) + a_high * b_low + a_low * b_high) + a_low * b_low;
     (product, error)
+}
+
+/// a² exactly.
+#[inline]
+pub(super) fn two_square(a: f64) -> (f64, f64) {
+    let square = a * a;
+    let (high, low) = split(a);
+    (
+        square,
+        ((high * high - square) + 2.0 * (high * low)) + low * low,
+    )
 }
 
 impl DoubleDouble {

@@ -50,20 +50,70 @@ impl<const D: usize> Relative<D> {
 pub struct GapPolynomial<N> {
     /// c₀ … c₄.
     pub coefficients: [N; 5],
-    /// r² + σ²: what c₀ is the difference of.
+    /// r² + σ²: what c₀ is the difference of. Where positions have been shifted
+    /// by a period s, s²/64 more, for the rounding of the shifted difference.
     pub place_scale: N,
     /// v² + γ², likewise for the terms in t².
     pub motion_scale: N,
 }
 
+/// What a polynomial is lowered by, and a slope has to exceed, to be certain:
+/// so many roundings u of the sizes that it is made of. The proof in the book
+/// needs 105; the largest error seen is below 4.
+pub const CERTAIN: f64 = 128.0;
+
+/// The exact motion of one grain as another sees it, or its leading digits.
+struct Exact<N, const D: usize> {
+    offset: [N; D],
+    velocity: [N; D],
+    acceleration: [N; D],
+    distance: N,
+    growth: N,
+}
+
 /// Products of components, summed in the order of the axes.
 #[inline]
-fn dot<N: Real, const D: usize>(a: &Vector<D>, b: &Vector<D>) -> N {
+fn dot<N: Real, const D: usize>(a: &[N; D], b: &[N; D]) -> N {
     let mut sum = N::ZERO;
     for axis in 0..D {
-        sum = sum + N::from_f64(a[axis]) * N::from_f64(b[axis]);
+        sum = sum + a[axis] * b[axis];
     }
     sum
+}
+
+impl<N: Real, const D: usize> Exact<N, D> {
+    #[inline]
+    fn of(relative: &Relative<D>) -> Self {
+        let wide = |v: &Vector<D>| std::array::from_fn(|axis| N::from_f64(v[axis]));
+        Exact {
+            offset: wide(&relative.offset),
+            velocity: wide(&relative.velocity),
+            acceleration: wide(&relative.acceleration),
+            distance: N::from_f64(relative.distance),
+            growth: N::from_f64(relative.growth),
+        }
+    }
+
+    #[inline]
+    fn gap(&self, accelerated: bool) -> GapPolynomial<N> {
+        let (r, v, a) = (&self.offset, &self.velocity, &self.acceleration);
+        let (distance, growth) = (self.distance, self.growth);
+        let (r_r, v_v) = (dot(r, r), dot(v, v));
+        let (place, motion) = (distance * distance, growth * growth);
+        let c1 = dot(r, v) - distance * growth;
+        let mut coefficients = [r_r - place, c1 + c1, v_v - motion, N::ZERO, N::ZERO];
+        if accelerated {
+            let [_, _, c2, c3, c4] = &mut coefficients;
+            *c2 = *c2 + dot(r, a);
+            *c3 = dot(v, a);
+            *c4 = dot(a, a).times(0.25);
+        }
+        GapPolynomial {
+            coefficients,
+            place_scale: r_r + place,
+            motion_scale: v_v + motion,
+        }
+    }
 }
 
 impl<N: Real> GapPolynomial<N> {
@@ -71,35 +121,41 @@ impl<N: Real> GapPolynomial<N> {
     #[inline]
     #[must_use]
     pub fn new<const D: usize>(relative: &Relative<D>) -> Self {
-        let Relative {
-            offset: r,
-            velocity: v,
-            acceleration: a,
-            ..
-        } = relative;
-        let mut gap = Self::without_acceleration(relative);
-        let [_, _, c2, c3, c4] = &mut gap.coefficients;
-        *c2 = *c2 + dot(r, a);
-        *c3 = dot(v, a);
-        *c4 = dot::<N, D>(a, a).times(0.25);
-        gap
+        Exact::of(relative).gap(true)
     }
 
     /// The same for two grains of equal acceleration: c₃ = c₄ = 0.
     #[inline]
     #[must_use]
     pub fn without_acceleration<const D: usize>(relative: &Relative<D>) -> Self {
-        let (r, v) = (&relative.offset, &relative.velocity);
-        let distance = N::from_f64(relative.distance);
-        let growth = N::from_f64(relative.growth);
-        let (r_r, v_v) = (dot::<N, D>(r, r), dot::<N, D>(v, v));
-        let (place, motion) = (distance * distance, growth * growth);
-        let c1 = dot::<N, D>(r, v) - distance * growth;
-        GapPolynomial {
-            coefficients: [r_r - place, c1 + c1, v_v - motion, N::ZERO, N::ZERO],
-            place_scale: r_r + place,
-            motion_scale: v_v + motion,
+        Exact::of(relative).gap(false)
+    }
+
+    /// The gap of two flights, their differences taken in this arithmetic too.
+    #[must_use]
+    pub fn between<const D: usize, F: PolynomialFlight<D>>(approach: &Approach<D, F>) -> Self {
+        let difference = |to: &Vector<D>, from: &Vector<D>| {
+            std::array::from_fn(|axis| N::from_f64(to[axis]) - N::from_f64(from[axis]))
+        };
+        let (first, second) = (&approach.first, &approach.second);
+        let mut offset: [N; D] = difference(&second.position(0.0), &first.position(0.0));
+        for axis in 0..D {
+            offset[axis] = offset[axis] + N::from_f64(approach.shift[axis]);
         }
+        let acceleration = if F::ACCELERATES {
+            difference(&second.acceleration(), &first.acceleration())
+        } else {
+            [N::ZERO; D]
+        };
+        let accelerated = acceleration.iter().any(|a| *a != N::ZERO);
+        let exact = Exact {
+            offset,
+            velocity: difference(&second.velocity(0.0), &first.velocity(0.0)),
+            acceleration,
+            distance: N::from_f64(approach.distance),
+            growth: N::from_f64(approach.growth),
+        };
+        exact.gap(accelerated)
     }
 
     /// f(t).
@@ -126,38 +182,79 @@ impl<N: Real> GapPolynomial<N> {
         c2 + t * (c3.times(3.0) + t * c4.times(6.0))
     }
 
-    /// Rounding in [`value`](Self::value) and in the coefficients themselves, in
-    /// d²: 4 u (σ² + r² + t² (v² + γ² + c₄ t²)).
+    /// S(t) = σ² + r² + t² (v² + γ² + c₄ t²), in d²: the size of what f(t) is
+    /// made of.
+    #[inline]
+    #[must_use]
+    pub fn size(&self, t: N) -> N {
+        let t2 = t * t;
+        self.place_scale + t2 * (self.motion_scale + self.coefficients[4] * t2)
+    }
+
+    /// A gap at which a root counts as found: 4 u S(t), in d².
     #[inline]
     #[must_use]
     pub fn rounding(&self, t: N) -> N {
-        let c4 = self.coefficients[4];
-        let t2 = t * t;
-        (self.place_scale + t2 * (self.motion_scale + c4 * t2)).times(4.0 * N::UNIT_ROUNDOFF)
+        self.size(t).times(4.0 * N::UNIT_ROUNDOFF)
     }
 
-    /// True only if there is certainly no contact up to `horizon`, found without
-    /// a root or a quotient. Most neighbours end here.
-    ///
-    /// The margin is 16 times the rounding at the horizon. It is what keeps an
-    /// answer from depending on the horizon: at a contact the solvers return, f
-    /// is far smaller than that.
+    /// f − [`CERTAIN`] u S, a polynomial again: it lies below the gap of the
+    /// exact inputs at all times t ≥ 0, whatever rounding there was in its
+    /// coefficients and will be in evaluating it.
+    #[inline]
+    #[must_use]
+    pub fn lowered(&self) -> Self {
+        let [c0, c1, c2, c3, c4] = self.coefficients;
+        let unit = CERTAIN * N::UNIT_ROUNDOFF;
+        GapPolynomial {
+            coefficients: [
+                c0 - self.place_scale.times(unit),
+                c1,
+                c2 - self.motion_scale.times(unit),
+                c3,
+                c4 - c4.times(unit),
+            ],
+            ..*self
+        }
+    }
+
+    /// What c₁ and c₂ may be wrong by, where they stand alone: [`CERTAIN`] u times
+    /// |r| |v| and v² + |r| |a|.
+    #[inline]
+    #[must_use]
+    pub fn margins(&self) -> [N; 2] {
+        let unit = CERTAIN * N::UNIT_ROUNDOFF;
+        let place = self.place_scale.sqrt();
+        let bend = self.coefficients[4].sqrt();
+        [
+            (place * self.motion_scale.sqrt()).times(unit),
+            (self.motion_scale + (place * bend).times(2.0)).times(unit),
+        ]
+    }
+
+    /// True only if this polynomial is positive up to `horizon`, found without a
+    /// root or a quotient. Asked of the [lowered](Self::lowered) one, it is
+    /// certain that there is no contact till then. Most neighbours end here.
     #[inline]
     #[must_use]
     pub fn is_clear(&self, horizon: N) -> bool {
         let zero = N::ZERO;
         let [c0, c1, c2, c3, c4] = self.coefficients;
-        // No term ever decreases: they never close, wherever they stand.
+        // Written so that NaN decides nothing.
+        let apart = c0 > zero;
+        if !apart {
+            return false;
+        }
+        // No term ever decreases.
         if c1 >= zero && c2 >= zero && c3 >= zero {
             return true;
         }
-        let margin = self.rounding(horizon).times(16.0);
         // Every falling term at its worst. With an infinite horizon this and
         // what follows are infinite or NaN, and decide nothing.
         let least = c0
             + horizon
                 * (c1.at_most(zero) + horizon * (c2.at_most(zero) + horizon * c3.at_most(zero)));
-        if least > margin {
+        if least > zero {
             return true;
         }
         // f ≥ c₀ + c₁ t + A t², A = c₂ + min (c₃ t + c₄ t²) or something smaller.
@@ -169,7 +266,6 @@ impl<N: Real> GapPolynomial<N> {
             horizon * c3.times(0.5)
         };
         let a = c2 + bend;
-        let room = c0 - margin;
-        a > zero && room > zero && (c1 >= zero || c1 * c1 < a.times(4.0) * room)
+        a > zero && (c1 >= zero || c1 * c1 < a.times(4.0) * c0)
     }
 }

@@ -1,6 +1,6 @@
 //! Inputs so large or small that squares overflow or vanish.
 
-use super::descent::{quadratic_descent, quartic_descent};
+use super::double_double::DoubleDouble;
 use super::gap::{GapPolynomial, Relative};
 use crate::model::Forecast;
 use crate::particle::Vector;
@@ -65,13 +65,8 @@ pub(super) fn first_contact<const D: usize>(
     if units.acceleration.amax() < NO_ACCELERATION {
         units.acceleration = Vector::zeros();
     }
-    let descent = if units.acceleration == Vector::<D>::zeros() {
-        let gap = GapPolynomial::without_acceleration(&units);
-        let [c0, c1, c2, ..] = gap.coefficients;
-        quadratic_descent([c0, c1, c2], touching, horizon)
-    } else {
-        quartic_descent(&GapPolynomial::new(&units), touching, horizon)
-    };
+    let descent = super::first_contact::<DoubleDouble, D>(&units, touching, horizon.next_up());
+    let descent = super::rounded(descent);
     let back = |after: f64| libm::scalbn(after, time);
     match super::forecast(descent) {
         // Later than any number can say.

@@ -1,16 +1,25 @@
 //! Grains and walls.
 
 use super::descent::{first_root, quadratic_descent};
-use super::forecast;
+use super::{DoubleDouble, Real, forecast, rounded};
 use crate::model::{Encounter, Forecast, PolynomialFlight, Wall};
 use crate::particle::Vector;
 
 /// Steps before a curved wall's question is put off.
 const MOST_STEPS: usize = 100;
+/// What the gap to a flat wall is lowered by, in roundings u of its terms: twice
+/// the most that sums, products and the quotient of the root can be wrong by.
+const PLANE_CERTAIN: f64 = 32.0;
+/// Sizes below this are safe to multiply.
+const LARGE: f64 = 1.0e140;
 /// Rounding of a distance, relative to the numbers it is computed from.
 const ROUNDING: f64 = 8.0 * f64::EPSILON;
 
 /// A flat wall at rest: the gap is a polynomial of degree two.
+///
+/// What `f64` makes of it is lowered by more than its rounding. If even so there
+/// is no contact up to the horizon, there is none; else the gap is solved again
+/// with twice the digits.
 #[inline]
 pub(super) fn plane<const D: usize, F: PolynomialFlight<D>, W: Wall<D>>(
     encounter: &Encounter<'_, D, F, W>,
@@ -18,21 +27,85 @@ pub(super) fn plane<const D: usize, F: PolynomialFlight<D>, W: Wall<D>>(
     offset: f64,
 ) -> Forecast {
     let flight = &encounter.flight;
-    let c0 = normal.dot(&flight.position(0.0)) - offset - encounter.radius;
-    let c1 = normal.dot(&flight.velocity(0.0)) - encounter.growth;
+    let (touching, horizon) = (encounter.touching, encounter.horizon);
+    let (position, velocity) = (flight.position(0.0), flight.velocity(0.0));
+    let unit = PLANE_CERTAIN * 0.5 * f64::EPSILON;
+    let (along, size) = both(normal, &position);
+    let e0 = unit * (size + offset.abs() + encounter.radius);
+    let c0 = along - offset - encounter.radius - e0;
+    let (along, size) = both(normal, &velocity);
+    let e1 = unit * (size + encounter.growth.abs());
+    let c1 = along - encounter.growth - e1;
     let c2 = if F::ACCELERATES {
-        0.5 * normal.dot(&flight.acceleration())
+        let (along, size) = both(normal, &flight.acceleration());
+        0.5 * along - unit * size
     } else {
         0.0
     };
-    let forecast = forecast(quadratic_descent(
+    // An overflow decides nothing.
+    let usual = c0.abs() < LARGE && c1.abs() < LARGE && c2.abs() < LARGE;
+    // After a collision the gap is zero and divided out. What begins within
+    // rounding of the wall is left to the wide arithmetic.
+    if usual && (touching || c0 > 0.0) {
+        let root = if !touching {
+            first_root(c0, c1, c2)
+        } else if c1 < 0.0 {
+            0.0
+        } else {
+            first_root(c1, c2, 0.0)
+        };
+        if root > horizon || root == f64::INFINITY {
+            return Forecast::Never;
+        }
+    }
+    settle_plane(encounter, normal, offset)
+}
+
+/// n · x and the sum of the sizes of its terms.
+#[inline]
+fn both<const D: usize>(n: &Vector<D>, x: &Vector<D>) -> (f64, f64) {
+    let (mut sum, mut size) = (0.0, 0.0);
+    for axis in 0..D {
+        let term = n[axis] * x[axis];
+        sum += term;
+        size += term.abs();
+    }
+    (sum, size)
+}
+
+fn settle_plane<const D: usize, F: PolynomialFlight<D>, W: Wall<D>>(
+    encounter: &Encounter<'_, D, F, W>,
+    normal: &Vector<D>,
+    offset: f64,
+) -> Forecast {
+    let flight = &encounter.flight;
+    let wide = DoubleDouble::from_f64;
+    let along = |x: &Vector<D>| {
+        let mut sum = DoubleDouble::ZERO;
+        for axis in 0..D {
+            // Most walls stand across an axis.
+            if normal[axis] != 0.0 {
+                sum = sum + wide(normal[axis]) * wide(x[axis]);
+            }
+        }
+        sum
+    };
+    let c0 = along(&flight.position(0.0)) - wide(offset) - wide(encounter.radius);
+    let c1 = along(&flight.velocity(0.0)) - wide(encounter.growth);
+    let c2 = if F::ACCELERATES {
+        along(&flight.acceleration()).times(0.5)
+    } else {
+        DoubleDouble::ZERO
+    };
+    let horizon = wide(encounter.horizon.next_up());
+    let forecast = forecast(rounded(quadratic_descent(
         [c0, c1, c2],
         encounter.touching,
-        encounter.horizon,
-    ));
+        horizon,
+    )));
     match forecast {
         // Numbers so large that products overflow.
-        Forecast::Contact(time) if time.is_nan() => Forecast::Never,
+        Forecast::Contact(time) if !time.is_finite() => Forecast::Never,
         other => other,
     }
 }
@@ -42,7 +115,8 @@ pub(super) fn plane<const D: usize, F: PolynomialFlight<D>, W: Wall<D>>(
 /// Far from it a grain cannot touch before it has covered the gap. Near it the
 /// gap φ obeys φ″ ≥ −B, with B from the wall's curvature and the accelerations, and
 /// φ + φ′ s − B s²/2 lies below it. The longer of the two steps is taken; neither
-/// passes a contact.
+/// passes a contact, if the wall's distances are right to [`ROUNDING`]: φ counts
+/// as less by as much. Contact is where it is twice that or less, and closing.
 pub(super) fn general<const D: usize, F: PolynomialFlight<D>, W: Wall<D>>(
     encounter: &Encounter<'_, D, F, W>,
     curvature: f64,
@@ -71,11 +145,13 @@ pub(super) fn general<const D: usize, F: PolynomialFlight<D>, W: Wall<D>>(
         } else {
             distance - radius
         };
-        if gap <= rounding && opening < 0.0 {
+        if gap <= 2.0 * rounding && opening < 0.0 {
             return Forecast::Contact(t);
         }
+        // So much there is of it at least.
+        let sure = gap - rounding;
         let speed = velocity.norm() + wall_speed;
-        let mut advance = covered(gap, speed + growth.max(0.0), acceleration);
+        let mut advance = covered(sure, speed + growth.max(0.0), acceleration);
         // The curvature is known out to one diameter; beyond 1 d it may grow
         // inwards like that of parallel surfaces.
         let known = encounter.radius.max(0.5) * 2.0;
@@ -114,7 +190,7 @@ fn minorant_step(gap: f64, opening: f64, bound: f64, rounding: f64, pass: f64) -
         return if gap <= rounding { 1.0e-6 * pass } else { 0.0 };
     }
     if opening < 0.0 {
-        return first_root(gap, opening, -0.5 * bound);
+        return first_root(gap - rounding, opening, -0.5 * bound);
     }
     // Over a time so short that curvature changes the gap by less than its
     // rounding, an opening gap stays open.
@@ -123,7 +199,7 @@ fn minorant_step(gap: f64, opening: f64, bound: f64, rounding: f64, pass: f64) -
         // Overlapping and opening: up to where it might begin to close.
         opening / bound
     } else {
-        first_root(gap.max(0.0), opening, -0.5 * bound)
+        first_root((gap - rounding).max(0.0), opening, -0.5 * bound)
     };
     step.max(least)
 }

@@ -14,7 +14,7 @@ use crate::scenario::tree::{Tree, not_finite};
 use crate::scenario::validate::validate;
 
 /// The largest scenario file that is read, in bytes.
-const LARGEST: u64 = 1 << 28;
+const LARGEST: u64 = 1 << 24;
 
 /// How a scenario is written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -57,19 +57,27 @@ impl Origin {
     ///
     /// # Errors
     ///
-    /// When the file cannot be read, is larger than 256 MB, or is not UTF-8.
+    /// When the file cannot be read, is larger than 16 MB, or is not UTF-8.
     pub fn open(file: &FilePath) -> Result<Self, ScenarioError> {
         let unreadable = |source| ScenarioError::Unreadable {
             file: file.display().to_string(),
             source,
         };
-        let mut text = String::new();
+        let mut bytes = Vec::new();
         File::open(file)
-            .and_then(|opened| opened.take(LARGEST + 1).read_to_string(&mut text))
+            .and_then(|opened| opened.take(LARGEST + 1).read_to_end(&mut bytes))
             .map_err(unreadable)?;
-        if text.len() as u64 > LARGEST {
-            return Err(unreadable(io::Error::other("more than 256 MB")));
+        if bytes.len() as u64 > LARGEST {
+            return Err(unreadable(io::Error::other("more than 16 MB")));
         }
+        let text = String::from_utf8(bytes).map_err(|error| {
+            let good = error.utf8_error().valid_up_to();
+            let before = String::from_utf8_lossy(&error.as_bytes()[..good]).into_owned();
+            let line = Line::at(&before, good);
+            let message =
+                format!("not text: byte {good} is not UTF-8, which is the only encoding allowed");
+            Origin::toml(&file.display().to_string(), "").refuse_text(message, Some(line))
+        })?;
         let is_json = file.extension().is_some_and(|end| end == "json");
         Ok(Origin {
             name: file.display().to_string(),
@@ -149,7 +157,10 @@ impl Origin {
                 })?;
                 match tree.0 {
                     Some(Value::Table(table)) => table,
-                    _ => return Err(self.refuse_text("not a JSON object".to_owned(), None)),
+                    _ => {
+                        let message = "not a JSON object; only one is allowed: { … }".to_owned();
+                        return Err(self.refuse_text(message, Some(Line::at(&self.text, 0))));
+                    }
                 }
             }
         };
@@ -212,6 +223,19 @@ pub fn read_text(origin: &Origin) -> Result<Scenario, Refusal> {
 /// The longest message that is passed on, in characters.
 const LONGEST_MESSAGE: usize = 600;
 
+/// A message without its middle if it is long: what was found stands at its
+/// beginning, what is allowed at its end.
+fn shortened(message: &str) -> String {
+    let letters: Vec<char> = message.chars().collect();
+    if letters.len() <= LONGEST_MESSAGE {
+        return message.to_owned();
+    }
+    let (head, tail) = (LONGEST_MESSAGE / 3, 2 * LONGEST_MESSAGE / 3);
+    let head: String = letters[..head].iter().collect();
+    let tail: String = letters[letters.len() - tail..].iter().collect();
+    format!("{head} … {tail}")
+}
+
 /// Turns what serde says into a refusal that says what to write instead.
 fn misfit(origin: &Origin, path: Path, message: &str) -> Refusal {
     let quoted: Vec<&str> = message.split('`').skip(1).step_by(2).collect();
@@ -236,7 +260,7 @@ fn misfit(origin: &Origin, path: Path, message: &str) -> Refusal {
             "a bare name, expected a table: { name = { … } }",
         );
     let at_key = message.starts_with("unknown key");
-    let message = message.chars().take(LONGEST_MESSAGE).collect();
+    let message = shortened(&message);
     Refusal {
         hint,
         ..origin.refuse_at(path, Problem::Schema { message }, at_key)

@@ -6,6 +6,10 @@ use crate::time::Time;
 
 /// The longest line that is read, in bytes.
 const LONGEST_LINE: u64 = 1 << 16;
+/// What is quoted of a file in a message, in characters.
+const LONGEST_QUOTE: usize = 60;
+/// The greatest number of columns.
+const MOST_COLUMNS: usize = 1000;
 /// The greatest number of grains that is read.
 const MOST_GRAINS: usize = 10_000_000;
 
@@ -87,12 +91,17 @@ impl<R: BufRead> XyzReader<R> {
     /// Reads one line into the buffer; false at the end of the file.
     fn next_line(&mut self) -> Result<bool, XyzError> {
         self.buffer.clear();
+        let mut bytes = std::mem::take(&mut self.buffer).into_bytes();
         let read = (&mut self.input)
             .take(LONGEST_LINE)
-            .read_line(&mut self.buffer)?;
+            .read_until(b'\n', &mut bytes)?;
         self.line += 1;
+        self.buffer = String::from_utf8(bytes).map_err(|error| {
+            let found = String::from_utf8_lossy(error.as_bytes()).into_owned();
+            self.wrong("its text", found, "UTF-8 is wanted")
+        })?;
         if read as u64 == LONGEST_LINE && !self.buffer.ends_with('\n') {
-            let start = self.buffer.chars().take(20).collect();
+            let start = self.buffer.clone();
             return Err(self.wrong("its text", start, "a line has at most 65535 bytes"));
         }
         Ok(read > 0)
@@ -102,7 +111,7 @@ impl<R: BufRead> XyzReader<R> {
         XyzError::Malformed {
             line: self.line,
             field,
-            found,
+            found: found.chars().take(LONGEST_QUOTE).collect(),
             wanted,
         }
     }
@@ -120,7 +129,7 @@ impl<R: BufRead> XyzReader<R> {
         let count: usize = match text.parse() {
             Ok(count) if count <= MOST_GRAINS => count,
             _ => {
-                let found = text.chars().take(40).collect();
+                let found = text.to_owned();
                 let wanted = "a number of grains, at most 10000000, is wanted";
                 return Err(self.wrong("the first line of a frame", found, wanted));
             }
@@ -229,6 +238,9 @@ impl<R: BufRead> XyzReader<R> {
                 Ok(width) if width <= 100 => width,
                 _ => return Err(wrong("a width is a number, at most 100")),
             };
+            if columns.len() + width > MOST_COLUMNS {
+                return Err(wrong("at most 1000 columns are allowed"));
+            }
             for place in 0..width {
                 columns.push(match (name.to_ascii_lowercase().as_str(), width) {
                     ("id", 1) => Column::Id,
@@ -255,6 +267,13 @@ impl<R: BufRead> XyzReader<R> {
         }
     }
 
+    fn positive(&self, field: &'static str, word: &str) -> Result<f64, XyzError> {
+        match word.parse::<f64>() {
+            Ok(number) if number.is_finite() && number > 0.0 => Ok(number),
+            _ => Err(self.wrong(field, word.into(), "a number greater than 0 is wanted")),
+        }
+    }
+
     fn read_grain(&self, id: u64, header: &Header) -> Result<(u64, Particle<3>), XyzError> {
         let mut id = id;
         let mut grain = Particle::new(Vector::zeros(), Vector::zeros());
@@ -271,9 +290,23 @@ impl<R: BufRead> XyzReader<R> {
                 }
                 Column::Position(axis) => grain.position[*axis] = self.number("position", word)?,
                 Column::Velocity(axis) => grain.velocity[*axis] = self.number("velocity", word)?,
-                Column::Radius => grain.diameter = 2.0 * self.number("radius", word)?,
-                Column::Diameter => grain.diameter = self.number("diameter", word)?,
-                Column::Mass => mass = Some(self.number("mass", word)?),
+                Column::Radius => {
+                    // What is written has half of it to be read again.
+                    let radius = self.positive("radius", word)?;
+                    grain.diameter = 2.0 * radius;
+                    if grain.diameter.is_infinite() {
+                        let wanted = "a smaller number is wanted";
+                        return Err(self.wrong("radius", word.into(), wanted));
+                    }
+                }
+                Column::Diameter => {
+                    grain.diameter = self.positive("diameter", word)?;
+                    if grain.radius() == 0.0 {
+                        let wanted = "a larger number is wanted";
+                        return Err(self.wrong("diameter", word.into(), wanted));
+                    }
+                }
+                Column::Mass => mass = Some(self.positive("mass", word)?),
                 Column::Mode => {
                     grain.mode = [Mode::Normal, Mode::Falling, Mode::Frozen, Mode::Fixed]
                         .into_iter()
