@@ -65,7 +65,7 @@ pub fn viscosity_spheres(density: f64, temperature: f64, contact: f64) -> f64 {
 
 /// Shear viscosity of elastic disks in the Enskog theory, in m√(g/d):
 /// 1.022 · ½ √(T/π) (1/χ + b + 0.8729 b² χ), b = πn/2 (Gass 1971,
-/// doi:10.1063/1.1675116).
+/// J. Chem. Phys. 54, 1898).
 #[must_use]
 pub fn viscosity_disks(density: f64, temperature: f64, contact: f64) -> f64 {
     let area = 0.5 * PI * density;

@@ -40,7 +40,7 @@ static ENSKOG: Source = Source {
 };
 static RUCKENSTEIN: Source = Source {
     name: "Ruckenstein-Liu",
-    citation: "E. Ruckenstein and H. Liu 1997, doi:10.1021/ie9701332, a fit to the simulations of B. J. Alder, D. M. Gass and T. E. Wainwright 1970, doi:10.1063/1.1673845, and of J. J. Erpenbeck and W. W. Wood 1991, doi:10.1103/PhysRevA.43.4254",
+    citation: "E. Ruckenstein and H. Liu 1997, Ind. Eng. Chem. Res. 36, 3927, a fit to the simulations of B. J. Alder, D. M. Gass and T. E. Wainwright 1970, doi:10.1063/1.1673845, and of J. J. Erpenbeck and W. W. Wood 1991, doi:10.1103/PhysRevA.43.4254",
 };
 static SPEEDY: Source = Source {
     name: "Speedy 1987",
