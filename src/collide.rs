@@ -102,7 +102,8 @@ impl<const D: usize> CollisionRule<D> for Restitution {
             Obstacle::Particle { particle, .. } => (self.restitution, true, particle.mass),
         };
         let elastic = cut_off && closing < self.elastic_speed;
-        let restitution = if elastic { 1.0 } else { restitution };
+        let inelastic = restitution;
+        let restitution = if elastic { 1.0 } else { inelastic };
         // The normal is of unit length to within rounding, which is a hair more
         // on average: left so, an elastic gas would heat up.
         let unit = impact.normal.norm_squared();
@@ -113,10 +114,17 @@ impl<const D: usize> CollisionRule<D> for Restitution {
         } else {
             0.0
         };
+        let spared_energy = if elastic {
+            let reduced_mass = impact.particle.mass * (1.0 - share);
+            0.5 * reduced_mass * closing * closing * (1.0 - inelastic * inelastic)
+        } else {
+            0.0
+        };
         Rebound {
             velocity: impact.particle.velocity + change * (1.0 - share),
             other_velocity: impact.obstacle_velocity() - change * share,
             elastic,
+            spared_energy,
         }
     }
 }

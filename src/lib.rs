@@ -108,6 +108,9 @@ mod book {
     struct Refusals;
     #[doc = include_str!("../book/src/notation.md")]
     struct Notation;
+    #[cfg(feature = "program")]
+    #[doc = include_str!("../book/src/interrupted.md")]
+    struct InterruptedRuns;
     #[doc = include_str!("../book/src/results.md")]
     struct Results;
 }

@@ -1,15 +1,19 @@
 //! What a run leaves behind: a folder of plain files.
 
+mod audit;
+mod checkpoint;
 mod events;
 mod folder;
 mod series;
 mod summary;
 mod xyz;
 
+pub use audit::{AuditReport, MissedContact};
+pub use checkpoint::{Checkpoint, CheckpointError};
 pub use events::EventLog;
 pub use folder::{FolderError, RunFolder, write_atomically};
 pub use series::{Series, SeriesRow};
 pub use summary::{
-    CollapseReport, EventCounts, FractionReport, ParticleCounts, StoppedBy, Summary,
+    CollapseReport, EnergyReport, EventCounts, FractionReport, ParticleCounts, StoppedBy, Summary,
 };
 pub use xyz::{Frame, XyzError, XyzReader};

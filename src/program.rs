@@ -1,6 +1,6 @@
 //! The command-line program.
 //!
-//! Exit codes: 0 done · 1 input or output failed · 2 the input is refused ·
+//! Exit codes: 0 done · 1 input or output, or a validation, failed · 2 the input is refused ·
 //! 3 stopped early, with the state saved · 130 and 143 stopped by a signal.
 
 mod cli;
@@ -11,9 +11,11 @@ mod load;
 mod means;
 mod processor;
 mod progress;
+mod resume;
 mod run;
 mod show;
 mod signals;
+mod validate;
 
 pub use error::ProgramError;
 
@@ -29,11 +31,13 @@ use crate::program::cli::{Cli, Command};
 pub fn main() -> ExitCode {
     let done = match Cli::parse().command {
         Command::Run(arguments) => run::run(&arguments),
+        Command::Resume(arguments) => resume::resume(&arguments),
         Command::Presets => show::presets(),
         Command::Preset { name } => show::preset(&name),
         Command::Check(arguments) => show::check(&arguments),
         Command::Schema => show::schema(),
         Command::Draw(arguments) => draw::draw(&arguments),
+        Command::Validate(arguments) => validate::validate(&arguments),
     };
     match done {
         Ok(code) => ExitCode::from(code),

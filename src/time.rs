@@ -34,9 +34,30 @@ const DECIMALS: usize = 25;
 /// assert!(late + 1.0e-12 > late);
 /// ```
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(try_from = "Written")]
 pub struct Time {
     ticks: i64,
     rest: f64,
+}
+
+/// A time as it stands in a file, which may say anything.
+#[derive(Deserialize)]
+struct Written {
+    ticks: i64,
+    rest: f64,
+}
+
+impl TryFrom<Written> for Time {
+    type Error = &'static str;
+
+    fn try_from(Written { ticks, rest }: Written) -> Result<Self, Self::Error> {
+        let quanta = rest * (1u128 << FRACTION_BITS) as f64;
+        let is_whole = quanta.is_sign_positive() && quanta == libm::floor(quanta);
+        if !is_whole || rest >= TICK || (ticks == i64::MAX && rest > 0.0) {
+            return Err("no instant: the rest of a tick is out of range");
+        }
+        Ok(Time { ticks, rest })
+    }
 }
 
 impl Time {

@@ -1,15 +1,20 @@
 //! What an elastic gas in a periodic box keeps: momentum and energy, the way
-//! back, and its course when seen from a moving frame.
+//! back, and its course when seen from a moving frame; and where the energy of
+//! all others goes.
 
 mod common;
 
-use common::{close, free, gas_grains, until, watch, what};
-use grainfall::boundary::Cuboid;
+use common::{close, free, gas_grains, heavy, periodic_laterally, rain_on_base, rule, until};
+use common::{watch, what};
+use grainfall::boundary::{Cuboid, Side};
 use grainfall::collide::Restitution;
-use grainfall::engine::{Limits, Simulation, StopReason};
-use grainfall::model::Boundary;
+use grainfall::dynamics::{ForceFree, Growing, UniformGravity};
+use grainfall::engine::{EnergyLedger, Guards, Limits, Settings, Simulation, StopReason};
+use grainfall::model::{Boundary, Model, Parts};
+use grainfall::policy::{EnergyStore, Never, SelfCheck, SlowDescent};
+use grainfall::predict::Polynomial;
 use grainfall::setup::Sizes;
-use grainfall::{Particle, Vector};
+use grainfall::{Mode, Particle, Vector};
 
 const MIXED: Sizes = Sizes::Bimodal {
     small: 0.7,
@@ -190,4 +195,154 @@ fn is_the_same_in_a_moving_frame<const D: usize>(packing_fraction: f64, boost: V
 fn a_gas_is_the_same_in_a_moving_frame() {
     is_the_same_in_a_moving_frame(0.3, Vector::<3>::new(3.0, -7.0, 11.0));
     is_the_same_in_a_moving_frame(0.5, Vector::<2>::new(-20.0, 1.0 / 3.0));
+}
+
+/// Total energy of every grain, in mgd; none of fixed ones.
+fn energies<const D: usize>(grains: &[Particle<D>], gravity: &Vector<D>) -> Vec<f64> {
+    let of = |grain: &Particle<D>| match grain.mode {
+        Mode::Fixed => 0.0,
+        _ => grain.kinetic_energy() - grain.mass * gravity.dot(&grain.position),
+    };
+    grains.iter().map(of).collect()
+}
+
+/// Goes through a run event by event and holds the ledger to what can be seen
+/// from outside. Between two events grains only fly: the energies of falling
+/// grains, and of those that cross a periodic side, change on the way.
+///
+/// The 10⁻¹² is of the energies of the grains whose velocities the event has
+/// changed; 10⁻¹⁵ of those of all covers the rounding of this sum itself.
+fn explains_every_event<M: Model<D>, const D: usize>(
+    mut simulation: Simulation<M, D>,
+    gravity: Vector<D>,
+    events: u64,
+) -> EnergyLedger {
+    for _ in 0..events {
+        let grains = simulation.snapshot();
+        let before = energies(&grains, &gravity);
+        let so_far = simulation.energy_ledger().sum();
+        let one_more = Limits::events(simulation.counts().total() + 1);
+        if simulation.run(&one_more, &mut ()) != StopReason::Events {
+            break;
+        }
+        let after = energies(&simulation.snapshot(), &gravity);
+        let mut change = 0.0;
+        let mut allowed = 0.0;
+        for (place, grain) in simulation.snapshot().iter().enumerate() {
+            change += after[place] - before[place];
+            let touched = grain.velocity != grains[place].velocity;
+            let part = if touched { 1.0e-12 } else { 1.0e-15 };
+            allowed += part * (after[place].abs() + before[place].abs());
+        }
+        let noted = simulation.energy_ledger().sum() - so_far;
+        let time = simulation.time();
+        close(noted, change, allowed, &format!("ledger at {time}"));
+    }
+    let ledger = simulation.energy_ledger();
+    let now: f64 = energies(&simulation.snapshot(), &gravity).iter().sum();
+    close(ledger.now, now, 1.0e-12 * now.abs().max(1.0), "energy now");
+    assert!(ledger.relative_error().abs() < 1.0e-12, "{ledger:?}");
+    ledger
+}
+
+#[test]
+fn the_ledger_explains_a_deposit_that_is_checked() {
+    let policy = SlowDescent {
+        energy_store: EnergyStore::EnergyAfter,
+        self_check: Some(SelfCheck::default()),
+        ..SlowDescent::with_threshold(0.1)
+    };
+    let model = heavy(rule(1.0e-3), policy, periodic_laterally::<3>(4.0));
+    let grains = rain_on_base::<3>(3, 40, 4.0, Sizes::default());
+    let simulation = Simulation::new(model, grains).unwrap();
+    let ledger = explains_every_event(simulation, -Vector::z(), 20_000);
+    // Everything that takes or gives has had its turn.
+    for loss in [ledger.pair, ledger.frozen, ledger.sleep, ledger.fall] {
+        assert!(loss < 0.0, "{ledger:?}");
+    }
+    assert!(ledger.given_back > 0.0 && ledger.elastic_spared > 0.0);
+    let nothing = [ledger.moving, ledger.growth, ledger.wall, ledger.inserted];
+    assert_eq!(nothing, [0.0; 4]);
+}
+
+#[test]
+fn the_ledger_explains_floors_holds_and_insertions() {
+    let sides = [
+        Side::Walls {
+            low: Some(0.0),
+            high: Some(6.0),
+            restitution: 0.8,
+        },
+        Side::floor(0.0, 0.5),
+    ];
+    let model = heavy(rule(1.0e-3), SlowDescent::with_threshold(0.05), sides);
+    let at = |x: f64, y: f64| Particle::new(Vector::<2>::new(x, y), Vector::<2>::new(0.3, -0.1));
+    let grains = (0..12)
+        .map(|i| at(1.0 + 1.3 * f64::from(i % 4), 1.0 + 1.2 * f64::from(i / 4)))
+        .collect();
+    let settings = Settings {
+        guards: Guards::floor_and_hold(1.0e-2, 1.0e-9),
+        ..Settings::default()
+    };
+    let mut simulation = Simulation::with_settings(model, grains, settings).unwrap();
+    simulation.insert(at(3.0, 9.0)).unwrap();
+    let ledger = explains_every_event(simulation, -Vector::y(), 4000);
+    assert!(ledger.wall < 0.0 && ledger.guard > 0.0, "{ledger:?}");
+    assert!(ledger.inserted > 9.0);
+}
+
+#[test]
+fn the_ledger_explains_a_chute_with_a_paddle() {
+    let gravity = Vector::<2>::new(0.3, -0.9);
+    let model = Parts {
+        dynamics: UniformGravity::new(gravity),
+        predictor: Polynomial,
+        collision_rule: Restitution::default(),
+        state_policy: Never,
+        boundary: Cuboid::new([Side::periodic(6.0), Side::floor(0.0, 0.7)]).unwrap(),
+    };
+    let mut grains: Vec<Particle<2>> = (0..6)
+        .map(|i| {
+            Particle::new(
+                Vector::<2>::new(0.9 * f64::from(i), 3.0),
+                Vector::<2>::zeros(),
+            )
+        })
+        .filter(|grain| grain.position.x < 5.0)
+        .map(|grain| Particle {
+            diameter: 0.8,
+            ..grain
+        })
+        .collect();
+    let mut paddle = Particle::fixed(Vector::<2>::new(3.0, 1.1));
+    paddle.velocity = Vector::<2>::new(0.5, 0.0);
+    grains.push(paddle);
+    let simulation = Simulation::new(model, grains).unwrap();
+    let ledger = explains_every_event(simulation, gravity, 3000);
+    assert!(ledger.crossing > 0.0 && ledger.moving != 0.0, "{ledger:?}");
+}
+
+#[test]
+fn the_ledger_explains_growth() {
+    let (grains, sides) = gas_grains::<3>(4, 60, 0.2, Sizes::default());
+    let model = Parts {
+        dynamics: Growing::new(ForceFree, 0.05),
+        predictor: Polynomial,
+        collision_rule: Restitution::constant(0.9),
+        state_policy: Never,
+        boundary: Cuboid::new(sides).unwrap(),
+    };
+    let simulation = Simulation::new(model, grains).unwrap();
+    let ledger = explains_every_event(simulation, Vector::zeros(), 3000);
+    assert!(ledger.growth > 0.0 && ledger.pair < 0.0);
+}
+
+#[test]
+fn a_long_run_keeps_its_ledger() {
+    let mut simulation = common::deposition::<3>(7, 200, 5.0, Sizes::default());
+    simulation.run(&Limits::all_frozen(), &mut ());
+    let ledger = simulation.energy_ledger();
+    println!("{:e} in {:?}", ledger.relative_error(), simulation.counts());
+    assert!(ledger.relative_error().abs() < 1.0e-9, "{ledger:?}");
+    assert!(ledger.guard != 0.0);
 }

@@ -20,9 +20,9 @@ use grainfall::setup::Sizes;
 use grainfall::{Particle, Time, Vector};
 
 const EQUAL: Sizes = Sizes::Equal { diameter: 1.0 };
-const DEPOSITION: &str = "06b171590ab9987d";
-const HEAP: &str = "8d9daead6e9a66db";
-const GAS: &str = "e82c7a85c2abf60a";
+const DEPOSITION: &str = "181d5ea391918572";
+const HEAP: &str = "b88e1f5771c7b1bc";
+const GAS: &str = "53f08db121ef88b9";
 
 /// A deposition in space.
 fn deposition() -> (Heavy<SlowDescent, 3>, Vec<Particle<3>>) {

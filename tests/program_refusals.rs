@@ -434,3 +434,29 @@ fn crowds_are_refused_quickly() {
         );
     }
 }
+
+#[test]
+fn subjects_of_validation_are_told_apart() {
+    let folder = tempfile::tempdir().unwrap();
+    let refused = grainfall(folder.path(), &["validate", "bounces", "bouncing"]);
+    assert_eq!(refused.status.code(), Some(2));
+    assert!(refused.stdout.is_empty(), "it began all the same");
+    let text = message(&refused);
+    assert!(
+        text.contains("`bouncing`") && text.contains("bounces"),
+        "{text}"
+    );
+
+    let done = grainfall(
+        folder.path(),
+        &["validate", "bounces", "--out", "found.json"],
+    );
+    assert_eq!(done.status.code(), Some(0), "{}", message(&done));
+    let table = String::from_utf8(done.stdout).unwrap();
+    assert!(table.contains("6 passed, 0 failed"), "{table}");
+    let found = std::fs::read_to_string(folder.path().join("found.json")).unwrap();
+    let found: serde_json::Value = serde_json::from_str(&found).unwrap();
+    let checks = found[0]["checks"].as_array().unwrap();
+    assert_eq!(checks.len(), 6);
+    assert!(checks.iter().all(|check| check["verdict"] == "pass"));
+}

@@ -163,14 +163,14 @@ fn work_of_a_deposition() {
     let mut simulation = Simulation::new(model, rain_on_base::<3>(1, 200, 6.0, EQUAL)).unwrap();
     simulation.run(&Limits::all_frozen(), &mut ());
     insta::assert_snapshot!(work(simulation.counts()), @r"
-    pair 93300
-    frozen 243000
-    wake 7390
-    sleep 7590
+    pair 85800
+    frozen 256000
+    wake 7680
+    sleep 7880
     wall 0
-    elastic 178000
-    transfer 6600
-    guard 334
+    elastic 187000
+    transfer 6590
+    guard 736
     ");
 }
 

@@ -9,95 +9,21 @@ use crate::engine::simulation::Simulation;
 use crate::engine::slot::Partner;
 use crate::model::{Boundary, Model, Wall};
 use crate::observe::TrajectoryHash;
-use crate::particle::{Mode, ParticleId, WallId};
-use crate::time::Time;
+use crate::particle::{Mode, ParticleId};
 use systems::{Case, Outcome};
 
 /// Deeper than this is no rounding.
 const DEEP: f64 = 1.0e-9;
-
-/// All combinations of −1, 0, 1.
-fn images<const D: usize>() -> impl Iterator<Item = [i32; D]> {
-    (0..3_i32.pow(D as u32)).map(|number| {
-        let mut rest = number;
-        std::array::from_fn(|_| {
-            let digit = rest % 3 - 1;
-            rest /= 3;
-            digit
-        })
-    })
-}
-
-/// How many periods to add to the place of `other` to have the image nearest to
-/// `one`, and `more`; `None` for images along axes without a period.
-fn turns_between<M: Model<D>, const D: usize>(
-    simulation: &Simulation<M, D>,
-    one: u32,
-    other: u32,
-    more: [i32; D],
-) -> Option<[i32; D]> {
-    let (world, model) = (&simulation.world, &simulation.model);
-    let here = world.particle_now(model, one).position;
-    let there = world.particle_now(model, other).position;
-    let mut turns = [0; D];
-    for axis in 0..D {
-        match model.boundary().period(axis) {
-            Some(period) => {
-                let nearest = libm::rint((here[axis] - there[axis]) / period.length);
-                turns[axis] = nearest as i32 + more[axis];
-            }
-            None if more[axis] != 0 => return None,
-            None => {}
-        }
-    }
-    Some(turns)
-}
 
 /// Every contact must be noted by one of the two, or lie beyond the next entry
 /// of one of them.
 fn audit_contacts<M: Model<D>, const D: usize>(
     simulation: &mut Simulation<M, D>,
 ) -> Result<(), String> {
-    let count = simulation.world.bodies.len() as u32;
-    let deepest = simulation.deepest;
-    for one in 0..count {
-        let mobile = simulation.world.bodies[one as usize].mode.is_mobile();
-        // Growing grains are all predicted anew when the grid is.
-        let own = simulation.slots[one as usize]
-            .key(one)
-            .time
-            .min(simulation.regrid_at);
-        for wall in 0..simulation.model.boundary().walls().len() {
-            let wall = WallId(wall as u16);
-            if let Some(time) = simulation.wall_contact(one, wall, Time::NEVER)
-                && mobile
-                && time < own
-            {
-                return Err(format!("{one} meets wall {wall} at {time} before {own}"));
-            }
-        }
-        for other in one + 1..count {
-            let theirs = simulation.slots[other as usize].key(other).time;
-            for more in images::<D>() {
-                let Some(turns) = turns_between(simulation, one, other, more) else {
-                    continue;
-                };
-                let known = own.min(theirs);
-                if let Some(time) = simulation.pair_contact(one, other, turns, known)
-                    && time < known
-                {
-                    return Err(format!(
-                        "{one} and {other} (turns {turns:?}) meet at {time}, but at {} their entries are {own} and {theirs}: {:?} {:?}",
-                        simulation.world.clock,
-                        simulation.world.bodies[one as usize],
-                        simulation.world.bodies[other as usize],
-                    ));
-                }
-            }
-        }
+    match simulation.audit().missed.first() {
+        Some(missed) => Err(format!("at {}: {missed}", simulation.world.clock)),
+        None => Ok(()),
     }
-    simulation.deepest = deepest;
-    Ok(())
 }
 
 /// Every entry of a list is also on the list of the other, if that has one.
@@ -179,6 +105,47 @@ fn hash_of<M: Model<D>, const D: usize>(
         }
     }
     hash.value()
+}
+
+/// Two equal simulations, one of which is saved and restored every so often,
+/// have to stay equal in all that is saved.
+fn restart<M: Model<D>, const D: usize>(
+    case: &Case<D>,
+    model: impl Fn() -> M,
+    mut through: Simulation<M, D>,
+    mut restored: Simulation<M, D>,
+) -> Result<(), String> {
+    let written = |simulation: &Simulation<M, D>| postcard::to_stdvec(&simulation.save());
+    let mut hashes = [TrajectoryHash::new(); 2];
+    let mut newcomers = case.newcomers.iter();
+    let end = through.time() + 5.0;
+    for step in 1..=case.events {
+        if step % 23 == 0
+            && let Some(newcomer) = newcomers.next()
+            && through.insert(*newcomer).is_ok() != restored.insert(*newcomer).is_ok()
+        {
+            return Err("one takes a grain that the other refuses".into());
+        }
+        if step % 5 == 0 {
+            let state = written(&restored)
+                .and_then(|bytes| postcard::from_bytes(&bytes))
+                .map_err(|error| format!("no state comes back: {error}"))?;
+            restored = Simulation::restore(model(), state)
+                .map_err(|error| format!("not restored: {error}"))?;
+        }
+        let limits = Limits {
+            time: end,
+            ..Limits::events(u64::from(step))
+        };
+        let why = through.run(&limits, &mut hashes[0]);
+        if why != restored.run(&limits, &mut hashes[1]) {
+            return Err("they stop for different reasons".into());
+        }
+    }
+    if hashes[0] != hashes[1] || written(&through) != written(&restored) {
+        return Err("saved and restored, it goes another way".into());
+    }
+    Ok(())
 }
 
 /// Runs a simulation event by event and audits it after each.

@@ -1,14 +1,18 @@
 //! What the engine stores of grains, and where they are now.
 
+use serde::{Deserialize, Serialize};
+
 use crate::engine::cells::Found;
 use crate::engine::counts::ModeCounts;
+use crate::engine::ledger::{Entry, Ledger};
 use crate::engine::neighbours::Neighbours;
 use crate::model::{Boundary, Dynamics, Flight, FlightOf, Model, Motion};
 use crate::particle::{Mode, Particle, ParticleId, Vector};
 use crate::time::Time;
 
 /// The state of a grain at its last event.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
+#[serde(bound = "")]
 pub(super) struct Body<const D: usize> {
     pub(super) position: Vector<D>,
     pub(super) velocity: Vector<D>,
@@ -34,6 +38,7 @@ pub(super) struct World<const D: usize> {
     pub(super) modes: ModeCounts,
     /// Largest diameter at t = 0, in d.
     pub(super) largest: f64,
+    pub(super) ledger: Ledger,
 }
 
 impl<const D: usize> World<D> {
@@ -42,6 +47,19 @@ impl<const D: usize> World<D> {
     pub(super) fn flight<M: Model<D>>(&self, model: &M, particle: u32) -> FlightOf<M, D> {
         let body = &self.bodies[particle as usize];
         flight_of(model, particle, body)
+    }
+
+    /// Files the kinetic energy that a grain gains as its velocity changes.
+    #[inline]
+    pub(super) fn note_change(
+        &mut self,
+        entry: Entry,
+        particle: u32,
+        before: &Vector<D>,
+        after: &Vector<D>,
+    ) {
+        let mass = self.masses[particle as usize];
+        self.ledger.add(entry, gain(mass, before, after));
     }
 
     /// A grain at the instant the clock shows, in the image it is stored in.
@@ -69,6 +87,11 @@ impl<const D: usize> World<D> {
         mode: Mode,
     ) {
         let body = &mut self.bodies[particle as usize];
+        if body.mode == Mode::Falling {
+            let weight = model.dynamics().gravity(self.clock) * self.masses[particle as usize];
+            let lost = weight.dot(&(body.position - position));
+            self.ledger.add(Entry::Fall, lost);
+        }
         body.position = position;
         body.velocity = velocity;
         body.since = self.clock;
@@ -87,6 +110,12 @@ impl<const D: usize> World<D> {
             if x < period.origin || x >= period.origin + period.length {
                 let turns = libm::floor((x - period.origin) / period.length);
                 body.position[axis] = x - turns * period.length;
+                let gravity = model.dynamics().gravity(self.clock)[axis];
+                if gravity != 0.0 && mode != Mode::Fixed {
+                    let weight = self.masses[particle as usize] * gravity;
+                    let gained = weight * (x - body.position[axis]);
+                    self.ledger.add(Entry::Crossing, gained);
+                }
                 self.near.unwind(particle, axis, turns as i32);
             }
         }
@@ -139,6 +168,12 @@ pub(super) fn flight_of<M: Model<D>, const D: usize>(
         },
         body.since,
     )
+}
+
+/// Kinetic energy gained by a mass, in mgd, as its velocity changes.
+#[inline]
+pub(super) fn gain<const D: usize>(mass: f64, before: &Vector<D>, after: &Vector<D>) -> f64 {
+    0.5 * mass * (after - before).dot(&(after + before))
 }
 
 /// Diameters at `time` over those at t = 0.

@@ -1,5 +1,6 @@
 //! The cascade guard and the collapse detector.
 
+use crate::engine::ledger::Entry;
 use crate::engine::projection::{Member, Touch, project};
 use crate::engine::settings::Collapse;
 use crate::engine::simulation::Simulation;
@@ -127,6 +128,8 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
             self.traces[member as usize].partner = Partner::Nobody;
             self.slots[member as usize].sleep = crate::time::Time::NEVER;
             self.note_speed(member);
+            self.world
+                .note_change(Entry::Guard, member, &was, &velocity);
             disturbed.push((member, velocity - was));
         }
         Relief { caught, disturbed }

@@ -6,6 +6,11 @@
 //! it is the one whose cell lies next to the grain's own. Outermost cells of
 //! axes that are not periodic reach to infinity.
 
+mod check;
+mod saved;
+
+pub(super) use saved::SavedCells;
+
 use crate::model::{Boundary, Period};
 use crate::particle::Vector;
 

@@ -1,6 +1,8 @@
 //! Carrying out collisions.
 
+use crate::engine::body::gain;
 use crate::engine::cascade::Relief;
+use crate::engine::ledger::Entry;
 use crate::engine::simulation::Simulation;
 use crate::engine::slot::{Partner, Slot};
 use crate::engine::view::View;
@@ -59,6 +61,8 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
                     kind = OccurrenceKind::Wake;
                     reason = Some(why);
                     extra_energy = waking.extra_energy;
+                    self.world
+                        .note_change(Entry::GivenBack, b, &two.velocity, &waking.velocity);
                     two.velocity = waking.velocity;
                     two.mode = Mode::Normal;
                     impact.obstacle = Obstacle::Particle {
@@ -70,8 +74,17 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
         }
         let two_mobile = two.mode.is_mobile();
         let mut rebound = self.rebound(&impact, a, Some(b));
+        let entry = match kind {
+            OccurrenceKind::Pair => Entry::Pair,
+            OccurrenceKind::Wake => Entry::Wake,
+            _ => Entry::Frozen,
+        };
+        self.note_collision(entry, &impact, &rebound);
         if extra_energy > 0.0 {
-            rebound.other_velocity = with_energy(rebound.other_velocity, two.mass, extra_energy);
+            let before = rebound.other_velocity;
+            rebound.other_velocity = with_energy(before, two.mass, extra_energy);
+            self.world
+                .note_change(Entry::GivenBack, b, &before, &rebound.other_velocity);
         }
         if !two_mobile {
             self.lift(&impact, &mut rebound);
@@ -95,13 +108,15 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
 
         let run = self
             .traces
-            .collided(a, Partner::Particle(b), !two_mobile, now);
+            .collided(a, Partner::Particle(b), !two_mobile, impact_speed, now);
         let held = (struck_static && !two_mobile && rebound.elastic).then_some(b);
         self.traces.hold(a, held, now);
         self.settle(a, one.position, rebound.velocity);
         let mut run_other = 0;
         if two_mobile {
-            run_other = self.traces.collided(b, Partner::Particle(a), false, now);
+            run_other = self
+                .traces
+                .collided(b, Partner::Particle(a), false, impact_speed, now);
             self.traces.hold(b, None, now);
             self.settle(b, stored_position, rebound.other_velocity);
         }
@@ -173,12 +188,13 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
         impact.obstacle = obstacle;
         let impact_speed = impact.closing_speed();
         let mut rebound = self.rebound(&impact, particle, None);
+        self.note_collision(Entry::Wall, &impact, &rebound);
         self.lift(&impact, &mut rebound);
         let sleep = self.ask_sleep(&impact, rebound.velocity, particle);
 
         let run = self
             .traces
-            .collided(particle, Partner::Wall(wall), true, now);
+            .collided(particle, Partner::Wall(wall), true, impact_speed, now);
         self.traces.hold(particle, None, now);
         self.settle(particle, one.position, rebound.velocity);
         let relief = self.end_cascade(particle, run);
@@ -247,6 +263,7 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
                 velocity: impact.particle.velocity,
                 other_velocity: impact.obstacle_velocity(),
                 elastic: false,
+                spared_energy: 0.0,
             };
         }
         let mut own_spin = self.spins[own as usize];
@@ -274,7 +291,10 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
         let apart = rebound.velocity - impact.obstacle_velocity();
         let leaving = apart.dot(&impact.normal) - impact.growth;
         if leaving < least {
+            let before = rebound.velocity;
             rebound.velocity += impact.normal * (least - leaving);
+            let gained = gain(impact.particle.mass, &before, &rebound.velocity);
+            self.world.ledger.add(Entry::Guard, gained);
             self.counts.guard += 1;
         }
     }

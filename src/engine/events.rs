@@ -64,6 +64,9 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
                 }
                 Source::Particle(particle) => self.carry_out(particle, key, observer),
             }
+            if cfg!(debug_assertions) {
+                self.keep_vigil();
+            }
         }
     }
 

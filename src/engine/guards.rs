@@ -3,11 +3,23 @@
 
 use std::ops::{Index, IndexMut};
 
+use serde::{Deserialize, Serialize};
+
+use crate::engine::settings::Guards;
 use crate::engine::slot::Partner;
 use crate::time::Time;
 
 /// Collisions closer together than this, in √(d/g), are at one instant.
 const INSTANT: f64 = 1.0e-12;
+
+/// So are those closer together than this part of the exit speed over gravity
+/// between which the surfaces come apart by less than `HAIR`: a grain that
+/// slides along another in bounces of 10⁻¹² √(gd), which are elastic, would
+/// make 10¹¹ of them in a unit of time.
+const HURRY: f64 = 0.01;
+
+/// Less than this, in d, does not separate two surfaces.
+const HAIR: f64 = 1.0e-12;
 
 /// How many recent contacts of a grain the hold remembers.
 const HELD: usize = 6;
@@ -16,7 +28,7 @@ const HELD: usize = 6;
 const LONG_AGO: Time = Time::FIRST;
 
 /// What is remembered of a grain's collisions.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 pub(super) struct Trace {
     /// Whom it left at its last event, if that was a collision.
     pub(super) partner: Partner,
@@ -31,7 +43,7 @@ pub(super) struct Trace {
 }
 
 /// Static partners that a grain may not meet again before a time.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 struct Holds {
     partners: [(u32, Time); HELD],
     next: usize,
@@ -45,20 +57,23 @@ impl Holds {
 }
 
 /// The traces of all grains.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub(super) struct Traces {
     traces: Vec<Trace>,
     /// Empty if the hold is off.
     holds: Vec<Holds>,
     hold: f64,
+    /// Collisions closer together than this may be at one instant.
+    moment: f64,
 }
 
 impl Traces {
-    pub(super) fn new(hold: f64) -> Self {
+    pub(super) fn new(guards: &Guards) -> Self {
         Traces {
             traces: Vec::new(),
             holds: Vec::new(),
-            hold,
+            hold: guards.hold,
+            moment: HURRY * guards.exit_speed,
         }
     }
 
@@ -80,13 +95,36 @@ impl Traces {
         self.holds.pop();
     }
 
-    /// Notes a collision, with a static obstacle or not; returns how many the
-    /// grain has made at this instant.
+    /// What does not fit, in traces that have been read, if anything.
+    pub(super) fn misfit(
+        &self,
+        guards: &Guards,
+        count: usize,
+        is_there: impl Fn(Partner) -> bool,
+    ) -> Option<&'static str> {
+        let fresh = Traces::new(guards);
+        if self.hold != fresh.hold || self.moment != fresh.moment {
+            return Some("they follow other guards");
+        }
+        let held = if self.hold > 0.0 { count } else { 0 };
+        if self.traces.len() != count || self.holds.len() != held {
+            return Some("their number is not that of the grains");
+        }
+        if self.holds.iter().any(|holds| holds.next >= HELD) {
+            return Some("a hold is out of place");
+        }
+        let met = |trace: &Trace| is_there(trace.partner);
+        (!self.traces.iter().all(met)).then_some("a collision with nobody")
+    }
+
+    /// Notes a collision at this closing speed, with a static obstacle or not;
+    /// returns how many the grain has made at this instant.
     pub(super) fn collided(
         &mut self,
         particle: u32,
         partner: Partner,
         is_static: bool,
+        speed: f64,
         now: Time,
     ) -> u32 {
         let trace = &mut self.traces[particle as usize];
@@ -98,7 +136,10 @@ impl Traces {
         if trace.confined <= 1 {
             trace.confined_since = now;
         }
-        let at_once = trace.last.is_finite() && now - trace.last < INSTANT;
+        let at_once = trace.last.is_finite() && {
+            let wait = now - trace.last;
+            wait < INSTANT || (wait < self.moment && speed * wait < HAIR)
+        };
         trace.run = if at_once {
             trace.run.saturating_add(1)
         } else {

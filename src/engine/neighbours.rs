@@ -11,6 +11,11 @@
 //! What is listed, and when, decides only how much has to be predicted: it
 //! never changes a trajectory.
 
+mod check;
+mod saved;
+
+pub(super) use saved::SavedNeighbours;
+
 use crate::engine::cells::{Cells, Found};
 use crate::model::Boundary;
 use crate::particle::Vector;
@@ -169,12 +174,24 @@ impl<const D: usize> Neighbours<D> {
     }
 
     /// Forgets the list of a grain that has come to rest; those that move keep
-    /// it on theirs.
+    /// it on theirs, unless it has stopped out of their reach, where it would
+    /// not find them again.
     pub(super) fn release(&mut self, particle: u32, position: &Vector<D>) {
         let tie = &mut self.ties[particle as usize];
         tie.anchor = *position;
         tie.leash = 0.0;
-        tie.list = Vec::new();
+        for other in std::mem::take(&mut tie.list) {
+            let theirs = &mut self.ties[other.particle as usize];
+            let mut apart = theirs.anchor - position;
+            for (axis, turns) in other.turns.into_iter().enumerate() {
+                apart[axis] += f64::from(turns) * self.periods[axis];
+            }
+            let reach = self.largest + theirs.leash;
+            if apart.norm_squared() >= reach * reach {
+                let entry = other.seen_from(particle);
+                theirs.list.retain(|found| *found != entry);
+            }
+        }
         self.cells.refile(particle, position);
     }
 

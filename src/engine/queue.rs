@@ -5,10 +5,14 @@
 //! the cost of an event does not depend on how many grains wait. Slots decide
 //! where an entry lies, never which comes first.
 
+mod check;
+
+use serde::{Deserialize, Serialize};
+
 use crate::time::Time;
 
 /// What an entry announces, in the order in which equal times are served.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 pub(super) enum Rank {
     Contact,
     Wall,
@@ -18,7 +22,7 @@ pub(super) enum Rank {
 }
 
 /// When and in which order: time, kind, smaller id, larger id.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 pub(super) struct Key {
     pub(super) time: Time,
     pub(super) rank: Rank,

@@ -90,6 +90,7 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
     pub(super) fn enqueue(&mut self, particle: u32) {
         let key = self.slots[particle as usize].key(particle);
         self.queue.set(particle, key);
+        self.vigil.touch(particle);
     }
 
     /// Lets every mobile neighbour note its contact with a static grain.

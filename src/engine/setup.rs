@@ -3,8 +3,10 @@
 use std::collections::BinaryHeap;
 
 use crate::engine::body::{Body, World, scale_at};
+use crate::engine::consistency::Vigil;
 use crate::engine::counts::{Counts, ModeCounts};
 use crate::engine::guards::Traces;
+use crate::engine::ledger::{Entry, Ledger};
 use crate::engine::neighbours::Neighbours;
 use crate::engine::queue::EventQueue;
 use crate::engine::settings::Settings;
@@ -41,25 +43,7 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
         particles: Vec<Particle<D>>,
         settings: Settings,
     ) -> Result<Self, SetupError> {
-        settings.guards.validate()?;
-        model.dynamics().validate()?;
-        model.collision_rule().validate()?;
-        model.state_policy().validate()?;
-        if !settings.start.is_finite() {
-            return Err(SetupError::Parameter {
-                field: "start",
-                value: settings.start.units(),
-                allowed: "a time that comes is allowed",
-            });
-        }
-        let horizon = settings.sleep_horizon;
-        if !(horizon > 0.0 && horizon.is_finite()) {
-            return Err(SetupError::Parameter {
-                field: "sleep_horizon",
-                value: horizon,
-                allowed: "a positive number is allowed",
-            });
-        }
+        check_parts(&model, &settings)?;
         let most = i32::MAX as usize;
         if particles.len() > most {
             return Err(SetupError::TooManyParticles {
@@ -99,6 +83,7 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
                 clock: settings.start,
                 modes: ModeCounts::default(),
                 largest,
+                ledger: Ledger::default(),
             },
             memories: vec![MemoryOf::<M, D>::default(); count],
             spins: vec![SpinOf::<M, D>::default(); count],
@@ -106,7 +91,7 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
             queue: EventQueue::new(count, settings.start),
             alarms: BinaryHeap::new(),
             alarm_count: 0,
-            traces: Traces::new(settings.guards.hold),
+            traces: Traces::new(&settings.guards),
             counts: Counts::default(),
             deepest: 0.0,
             speed_ceiling: 0.0,
@@ -116,6 +101,7 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
             escaped: None,
             commands: Commands::default(),
             scratch: Vec::new(),
+            vigil: Vigil::default(),
             model,
         };
         for particle in particles {
@@ -132,6 +118,8 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
             simulation.predict(particle);
         }
         simulation.deepest = 0.0;
+        let energy = simulation.energy_ledger().now;
+        simulation.world.ledger.add(Entry::AtStart, energy);
         Ok(simulation)
     }
 
@@ -168,6 +156,8 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
         // those that move.
         self.tie(index);
         self.note_speed(index);
+        let energy = self.energy_of(&self.particle(id));
+        self.world.ledger.add(Entry::Inserted, energy);
         self.tell_started(index);
         self.predict(index);
         self.release_if_static(index);
@@ -250,6 +240,33 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
             }),
         }
     }
+}
+
+/// Refuses a model or settings that are out of range.
+pub(super) fn check_parts<M: Model<D>, const D: usize>(
+    model: &M,
+    settings: &Settings,
+) -> Result<(), SetupError> {
+    settings.guards.validate()?;
+    model.dynamics().validate()?;
+    model.collision_rule().validate()?;
+    model.state_policy().validate()?;
+    if !settings.start.is_finite() {
+        return Err(SetupError::Parameter {
+            field: "start",
+            value: settings.start.units(),
+            allowed: "a time that comes is allowed",
+        });
+    }
+    let horizon = settings.sleep_horizon;
+    if !(horizon > 0.0 && horizon.is_finite()) {
+        return Err(SetupError::Parameter {
+            field: "sleep_horizon",
+            value: horizon,
+            allowed: "a positive number is allowed",
+        });
+    }
+    Ok(())
 }
 
 fn validate<const D: usize>(id: ParticleId, particle: &Particle<D>) -> Result<(), SetupError> {

@@ -3,6 +3,7 @@ use std::collections::BinaryHeap;
 
 use crate::engine::body::{World, flight_of, scale_at};
 use crate::engine::cells::Found;
+use crate::engine::consistency::Vigil;
 use crate::engine::counts::{Counts, ModeCounts};
 use crate::engine::guards::Traces;
 use crate::engine::neighbours::Neighbours;
@@ -41,6 +42,7 @@ pub struct Simulation<M: Model<D>, const D: usize> {
     pub(super) escaped: Option<ParticleId>,
     pub(super) commands: Commands<EventOf<M, D>>,
     pub(super) scratch: Vec<Found<D>>,
+    pub(super) vigil: Vigil,
 }
 
 impl<M: Model<D>, const D: usize> Simulation<M, D> {
@@ -105,33 +107,11 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
         &self.memories[id.index()]
     }
 
-    /// Kinetic energy now, in mgd, of all grains but fixed ones.
-    #[must_use]
-    pub fn kinetic_energy(&self) -> f64 {
-        self.sum(Particle::kinetic_energy)
-    }
-
-    /// Potential energy now, in mgd, of all grains but fixed ones, counted from
-    /// the origin. Along a periodic axis it is that of the primary cell.
-    #[must_use]
-    pub fn potential_energy(&self) -> f64 {
-        let gravity = self.model.dynamics().gravity(self.world.clock);
-        self.sum(|particle| -particle.mass * gravity.dot(&particle.position))
-    }
-
     /// The deepest overlap of any grain with a neighbour, in d, over all events
     /// so far: looked for among all neighbours of an event's grains.
     #[must_use]
     pub fn max_overlap(&self) -> f64 {
         self.deepest
-    }
-
-    fn sum(&self, of: impl Fn(&Particle<D>) -> f64) -> f64 {
-        (0..self.world.bodies.len() as u32)
-            .map(|id| self.particle(ParticleId(id)))
-            .filter(|particle| particle.mode != crate::particle::Mode::Fixed)
-            .map(|particle| of(&particle))
-            .sum()
     }
 
     /// Diameters at `time` over those at t = 0.
@@ -183,6 +163,11 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
         }
     }
 
+    /// Diameters that lists are made for, over those at t = 0.
+    pub(super) fn listed_scale(&self) -> f64 {
+        listed_scale::<M, D>(self.world.near.largest(), self.world.largest)
+    }
+
     /// Makes the neighbour list of a moving grain for where it is now.
     pub(super) fn tie(&mut self, particle: u32) {
         let World {
@@ -195,12 +180,7 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
         let body = &bodies[particle as usize];
         let flight = flight_of(&self.model, particle, body);
         let after = *clock - body.since;
-        let scale = if M::Dynamics::GROWS {
-            // As large as they may become on this grid.
-            near.largest() / *largest
-        } else {
-            1.0
-        };
+        let scale = listed_scale::<M, D>(near.largest(), *largest);
         let radius_of = |other: u32| scale * bodies[other as usize].radius;
         near.tie(
             particle,
@@ -208,5 +188,14 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
             &flight.velocity(after),
             radius_of,
         );
+    }
+}
+
+/// As large as grains may become on this grid.
+fn listed_scale<M: Model<D>, const D: usize>(for_largest: f64, largest: f64) -> f64 {
+    if M::Dynamics::GROWS {
+        for_largest / largest
+    } else {
+        1.0
     }
 }

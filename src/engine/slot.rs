@@ -1,11 +1,13 @@
 //! What lies ahead of a grain, and its entry in the queue.
 
+use serde::{Deserialize, Serialize};
+
 use crate::engine::queue::{Key, Rank};
 use crate::particle::WallId;
 use crate::time::Time;
 
 /// Who a grain meets.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub(super) enum Partner {
     Nobody,
     Particle(u32),
@@ -13,7 +15,7 @@ pub(super) enum Partner {
 }
 
 /// What lies ahead of a grain.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 pub(super) struct Slot {
     /// Its next contact, as far as it has to know.
     pub(super) contact: Time,

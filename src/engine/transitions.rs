@@ -3,6 +3,9 @@
 use std::cmp::Ordering;
 use std::cmp::Reverse;
 
+use serde::{Deserialize, Serialize};
+
+use crate::engine::ledger::Entry;
 use crate::engine::queue::{Key, Rank};
 use crate::engine::simulation::Simulation;
 use crate::engine::slot::{Partner, Slot};
@@ -14,7 +17,7 @@ use crate::model::{
 use crate::particle::{Mode, ParticleId, Vector};
 
 /// An event that the policy has asked for.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 pub(super) struct Alarm<E> {
     pub(super) key: Key,
     /// Tells apart what was asked for one grain and one instant: first asked,
@@ -66,6 +69,8 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
         let rest = model.dynamics().ground_velocity(&state.position, now);
         self.world
             .write(model, particle, state.position, rest, Mode::Frozen);
+        self.world
+            .note_change(Entry::Sleep, particle, &state.velocity, &rest);
         self.slots[particle as usize] = Slot::EMPTY;
         self.traces[particle as usize].partner = Partner::Nobody;
         self.schedule();
@@ -204,6 +209,8 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
             velocity,
             Mode::Normal,
         );
+        self.world
+            .note_change(Entry::GivenBack, particle, &before.velocity, &velocity);
         self.traces[particle as usize].partner = Partner::Nobody;
         self.tie_if_moving(particle);
         self.note_speed(particle);

@@ -18,6 +18,9 @@ pub struct Rebound<const D: usize> {
     pub other_velocity: Vector<D>,
     /// The collision was made elastic by a cut-off (V_c), for the statistics.
     pub elastic: bool,
+    /// The kinetic energy, in mgd, that the collision would have cost without
+    /// that cut-off; 0 if it did not act.
+    pub spared_energy: f64,
 }
 
 /// The inner states of the grains in a collision.

@@ -210,6 +210,23 @@ pub trait StatePolicy<const D: usize> {
         Ok(())
     }
 
+    /// Says what is wrong with a memory, between events; asked for
+    /// [`assert_consistent`](crate::engine::Simulation::assert_consistent), so
+    /// as good as always in builds with debug assertions. Costs nothing in
+    /// others.
+    ///
+    /// # Errors
+    ///
+    /// What no memory of a grain in this state may say.
+    fn check_memory<S: Surroundings<D>>(
+        &self,
+        _id: ParticleId,
+        _near: &S,
+        _memory: &Self::Memory,
+    ) -> Result<(), String> {
+        Ok(())
+    }
+
     /// Called once for each grain when the simulation starts, or when the grain
     /// is inserted.
     fn on_start<S: Surroundings<D>>(

@@ -1,13 +1,16 @@
-use xxhash_rust::xxh3::Xxh3;
+use serde::{Deserialize, Serialize};
+use xxhash_rust::xxh3::xxh3_64_with_seed;
 
 use crate::model::{Observer, Occurrence, Surroundings};
 
 /// A hash of every physical event: its time, kind, ids, and velocities after,
-/// to the last bit (64-bit XXH3). Two runs with the same hash went the same
-/// way.
-#[derive(Clone, Default)]
+/// to the last bit. Two runs with the same hash went the same way.
+///
+/// A chain: the 64-bit XXH3 of each event is seeded with the hash of all before
+/// it, so that its whole state is the one number that it shows and can be saved.
+#[derive(Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct TrajectoryHash {
-    state: Xxh3,
+    value: u64,
 }
 
 impl TrajectoryHash {
@@ -20,7 +23,7 @@ impl TrajectoryHash {
     /// The hash so far.
     #[must_use]
     pub fn value(&self) -> u64 {
-        self.state.digest()
+        self.value
     }
 }
 
@@ -52,6 +55,6 @@ impl<const D: usize> Observer<D> for TrajectoryHash {
                 put(&component.to_le_bytes());
             }
         }
-        self.state.update(&record[..length]);
+        self.value = xxh3_64_with_seed(&record[..length], self.value);
     }
 }

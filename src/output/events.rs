@@ -21,6 +21,20 @@ impl<W: Write> EventLog<W> {
         }
     }
 
+    /// A log that goes on in `out`, where the names of the columns stand
+    /// already if `headed`.
+    pub fn continued(out: W, headed: bool) -> Self {
+        EventLog {
+            headed,
+            ..EventLog::new(out)
+        }
+    }
+
+    /// Where it goes to; what has not been flushed is not there yet.
+    pub fn get_ref(&self) -> &W {
+        self.table.get_ref()
+    }
+
     /// Hands everything on to the output.
     ///
     /// # Errors

@@ -1,9 +1,11 @@
-use std::fs::{self, File};
-use std::io::{self, Write};
+use std::fs::{self, File, OpenOptions, TryLockError};
+use std::io::{self, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
 /// True for the names of files that a run, or a picture of it, leaves behind.
 fn is_of_a_run(name: &str) -> bool {
+    // Begun, but never finished.
+    let name = name.strip_suffix(".part").unwrap_or(name);
     let input = name
         .strip_prefix("input-")
         .and_then(|rest| rest.strip_suffix(".xyz"))
@@ -14,8 +16,11 @@ fn is_of_a_run(name: &str) -> bool {
             "summary.json",
             "series.csv",
             "frames.xyz",
+            "audit.json",
             "events.csv",
             "picture.svg",
+            "checkpoint",
+            "checkpoint.previous",
         ]
         .contains(&name)
 }
@@ -38,6 +43,32 @@ pub enum FolderError {
         /// The name.
         folder: String,
     },
+    /// There is no run.
+    #[error("{folder} holds no run that can be resumed: {reason}")]
+    NoRun {
+        /// The name.
+        folder: String,
+        /// Why.
+        reason: &'static str,
+    },
+    /// Another process is at it.
+    #[error(
+        "{folder} is being written by another grainfall process; wait for it, or stop it first"
+    )]
+    InUse {
+        /// The folder.
+        folder: String,
+    },
+    /// A file of the run is shorter than it was when its state was saved.
+    #[error("{file} has {found} bytes, fewer than the {wanted} it had at the checkpoint")]
+    Shorter {
+        /// Which.
+        file: String,
+        /// Its length.
+        found: u64,
+        /// The length it had.
+        wanted: u64,
+    },
     /// A file or the folder can't be written.
     #[error("cannot write {file}: {source}")]
     Io {
@@ -52,6 +83,8 @@ pub enum FolderError {
 #[derive(Clone, Debug)]
 pub struct RunFolder {
     path: PathBuf,
+    /// Folders that were made for it, the outermost first.
+    made: Vec<PathBuf>,
 }
 
 impl RunFolder {
@@ -77,7 +110,9 @@ impl RunFolder {
                 });
             }
         };
-        match names.into_iter().next() {
+        // A run that was cut off before it had written anything whole is none.
+        let mut names = names.into_iter().filter(|name| !is_part(name));
+        match names.next() {
             Some(found) if !force => Err(FolderError::Occupied { folder, found }),
             _ => Ok(()),
         }
@@ -91,8 +126,12 @@ impl RunFolder {
     /// As [`RunFolder::check`], and when the folder can't be made.
     pub fn create(path: &Path, force: bool) -> Result<Self, FolderError> {
         RunFolder::check(path, force)?;
+        let missing = path.ancestors().take_while(|folder| !folder.exists());
+        let mut made: Vec<_> = missing.map(Path::to_path_buf).collect();
+        made.reverse();
         let folder = RunFolder {
             path: path.to_path_buf(),
+            made,
         };
         let failed = |file: &Path, source| FolderError::Io {
             file: file.display().to_string(),
@@ -106,6 +145,78 @@ impl RunFolder {
             }
         }
         Ok(folder)
+    }
+
+    /// The folder of a run that was begun earlier.
+    ///
+    /// # Errors
+    ///
+    /// When there is none.
+    pub fn open(path: &Path) -> Result<Self, FolderError> {
+        let none = |reason| {
+            Err(FolderError::NoRun {
+                folder: path.display().to_string(),
+                reason,
+            })
+        };
+        if !path.is_dir() {
+            return none("there is no such folder");
+        }
+        if !path.join("scenario.toml").is_file() {
+            return none("there is no scenario.toml in it; begin with `grainfall run`");
+        }
+        Ok(RunFolder {
+            path: path.to_path_buf(),
+            made: Vec::new(),
+        })
+    }
+
+    /// Keeps other processes from writing to it as long as the file stays open,
+    /// where the file system can do that.
+    ///
+    /// # Errors
+    ///
+    /// When another process is at it already.
+    pub fn lock(&self) -> Result<File, FolderError> {
+        let file = self.file("scenario.toml");
+        let opened = File::open(&file).map_err(|source| FolderError::Io {
+            file: file.display().to_string(),
+            source,
+        })?;
+        match opened.try_lock() {
+            Err(TryLockError::WouldBlock) => Err(FolderError::InUse {
+                folder: self.path.display().to_string(),
+            }),
+            Ok(()) | Err(TryLockError::Error(_)) => Ok(opened),
+        }
+    }
+
+    /// Takes a run that has come to nothing away again, and the folders that
+    /// were made for it.
+    pub fn discard(&self) {
+        // What can't be removed stays: the reason for this is told already.
+        for name in names_in(&self.path).unwrap_or_default() {
+            if is_of_a_run(&name) {
+                let _ = fs::remove_file(self.file(&name));
+            }
+        }
+        for folder in self.made.iter().rev() {
+            let _ = fs::remove_dir(folder);
+        }
+    }
+
+    /// Takes away what a process that was killed had begun to write.
+    ///
+    /// # Errors
+    ///
+    /// When something can't be removed.
+    pub fn tidy(&self) -> io::Result<()> {
+        for name in names_in(&self.path)? {
+            if is_part(&name) {
+                fs::remove_file(self.file(&name))?;
+            }
+        }
+        Ok(())
     }
 
     /// Where it is.
@@ -133,6 +244,49 @@ impl RunFolder {
         })
     }
 
+    /// A file in it to be written on from its byte `at`; what comes after is cut
+    /// off.
+    ///
+    /// # Errors
+    ///
+    /// When the file is shorter or can't be opened.
+    pub fn cut_file(&self, name: &str, at: u64) -> Result<File, FolderError> {
+        self.check_length(name, at)?;
+        let file = self.file(name);
+        let opened = OpenOptions::new().write(true).open(&file);
+        let cut = opened.and_then(|mut opened| {
+            opened.set_len(at)?;
+            opened.seek(SeekFrom::Start(at))?;
+            Ok(opened)
+        });
+        cut.map_err(|source| FolderError::Io {
+            file: file.display().to_string(),
+            source,
+        })
+    }
+
+    /// Sees whether a file in it has at least `wanted` bytes.
+    ///
+    /// # Errors
+    ///
+    /// When it is not there or shorter.
+    pub fn check_length(&self, name: &str, wanted: u64) -> Result<(), FolderError> {
+        let file = self.file(name);
+        let shown = file.display().to_string();
+        match fs::metadata(&file) {
+            Ok(about) if about.len() >= wanted => Ok(()),
+            Ok(about) => Err(FolderError::Shorter {
+                file: shown,
+                found: about.len(),
+                wanted,
+            }),
+            Err(source) => Err(FolderError::Io {
+                file: shown,
+                source,
+            }),
+        }
+    }
+
     /// Writes a whole file, so that it is there complete or not at all.
     ///
     /// # Errors
@@ -145,6 +299,11 @@ impl RunFolder {
             source,
         })
     }
+}
+
+/// True for the names of files that were never finished.
+fn is_part(name: &str) -> bool {
+    name.ends_with(".part") && is_of_a_run(name)
 }
 
 /// The names of everything in a folder, in order.
@@ -166,16 +325,39 @@ pub fn write_atomically(file: &Path, text: &[u8]) -> io::Result<()> {
     let mut name = file.file_name().unwrap_or_default().to_os_string();
     name.push(".part");
     let part = file.with_file_name(name);
-    let written = File::create(&part).and_then(|mut out| {
-        out.write_all(text)?;
+    write_synced(&part, text)?;
+    if let Err(error) = fs::rename(&part, file) {
+        // The first error is the one to tell.
+        let _ = fs::remove_file(&part);
+        return Err(error);
+    }
+    sync_folder(file.parent().unwrap_or(Path::new(".")));
+    Ok(())
+}
+
+/// Writes a file that is on the disk when this returns; if it can't be, nothing
+/// is left of it.
+pub(super) fn write_synced(file: &Path, bytes: &[u8]) -> io::Result<()> {
+    let written = File::create(file).and_then(|mut out| {
+        out.write_all(bytes)?;
         out.sync_all()
     });
-    match written.and_then(|()| fs::rename(&part, file)) {
-        Ok(()) => Ok(()),
-        Err(error) => {
-            // The first error is the one to tell.
-            let _ = fs::remove_file(&part);
-            Err(error)
-        }
+    if written.is_err() {
+        // The first error is the one to tell.
+        let _ = fs::remove_file(file);
+    }
+    written
+}
+
+/// Sees to it that new names are on the disk. Not every system can do that, and
+/// what the files hold does not depend on it.
+pub(super) fn sync_folder(folder: &Path) {
+    let folder = if folder.as_os_str().is_empty() {
+        Path::new(".")
+    } else {
+        folder
+    };
+    if let Ok(opened) = File::open(folder) {
+        let _ = opened.sync_all();
     }
 }

@@ -52,6 +52,21 @@ impl<W: Write> Series<W> {
         }
     }
 
+    /// A series that goes on in `out`, where the names of the columns stand
+    /// already.
+    pub fn continued(out: W) -> Self {
+        Series {
+            table: csv::WriterBuilder::new()
+                .has_headers(false)
+                .from_writer(out),
+        }
+    }
+
+    /// Where it goes to; what has not been flushed is not there yet.
+    pub fn get_ref(&self) -> &W {
+        self.table.get_ref()
+    }
+
     /// Writes a row, and before the first one the names of the columns.
     ///
     /// # Errors

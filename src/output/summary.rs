@@ -2,7 +2,7 @@ use std::fmt;
 
 use serde::{Deserialize, Serialize};
 
-use crate::engine::{Collapse, Counts, ModeCounts};
+use crate::engine::{Collapse, Counts, EnergyLedger, ModeCounts};
 
 /// Why a run ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -20,6 +20,18 @@ pub enum StoppedBy {
     Interrupted,
     /// An error on the way; the message is in `error`.
     Error,
+}
+
+impl StoppedBy {
+    /// Whether the run came to an end of its own, so that nothing is left to
+    /// resume.
+    #[must_use]
+    pub fn is_finished(self) -> bool {
+        match self {
+            StoppedBy::AllFrozen | StoppedBy::Time | StoppedBy::Events => true,
+            StoppedBy::Collapse | StoppedBy::Interrupted | StoppedBy::Error => false,
+        }
+    }
 }
 
 /// `summary.json`: how a run ended.
@@ -50,6 +62,8 @@ pub struct Summary {
     pub kinetic_energy: f64,
     /// In mgd.
     pub potential_energy: f64,
+    /// Where the energy has gone since the start, in mgd.
+    pub energy_ledger: EnergyReport,
     /// Of the middle of the deposit, or null if there is none.
     pub packing_fraction: Option<FractionReport>,
     /// Time-weighted mean of the number of normal grains while a deposit
@@ -160,6 +174,104 @@ impl From<ModeCounts> for ParticleCounts {
     }
 }
 
+/// The energy ledger: by how much the total energy of all grains but fixed
+/// ones has changed, and what changed it. What is lost counts negative.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct EnergyReport {
+    /// Kinetic and potential energy at the start.
+    pub at_start: f64,
+    /// The same at the end.
+    pub at_end: f64,
+    /// By collisions of two mobile grains.
+    pub pair: f64,
+    /// By collisions with static grains that stayed.
+    pub frozen: f64,
+    /// By collisions that woke a frozen grain.
+    pub wake: f64,
+    /// By collisions with walls.
+    pub wall: f64,
+    /// By falling asleep.
+    pub sleep: f64,
+    /// Given to grains that woke.
+    pub given_back: f64,
+    /// By falling at constant velocity.
+    pub fall: f64,
+    /// By guards.
+    pub guard: f64,
+    /// By grains and walls that move as prescribed.
+    pub moving: f64,
+    /// By growing diameters.
+    pub growth: f64,
+    /// By crossing periodic sides against which gravity leans.
+    pub crossing: f64,
+    /// By grains that were inserted.
+    pub inserted: f64,
+    /// All of these together.
+    pub sum: f64,
+    /// What they leave unexplained of the change, over the sum of their sizes:
+    /// rounding.
+    pub relative_error: f64,
+    /// Not in the sum: what collisions below V_c would have cost.
+    pub elastic_spared: f64,
+}
+
+impl From<EnergyLedger> for EnergyReport {
+    fn from(ledger: EnergyLedger) -> Self {
+        // No minus sign on nothing.
+        let plain = |energy: f64| energy + 0.0;
+        EnergyReport {
+            at_start: plain(ledger.at_start),
+            at_end: plain(ledger.now),
+            pair: plain(ledger.pair),
+            frozen: plain(ledger.frozen),
+            wake: plain(ledger.wake),
+            wall: plain(ledger.wall),
+            sleep: plain(ledger.sleep),
+            given_back: plain(ledger.given_back),
+            fall: plain(ledger.fall),
+            guard: plain(ledger.guard),
+            moving: plain(ledger.moving),
+            growth: plain(ledger.growth),
+            crossing: plain(ledger.crossing),
+            inserted: plain(ledger.inserted),
+            sum: plain(ledger.sum()),
+            relative_error: plain(ledger.relative_error()),
+            elastic_spared: plain(ledger.elastic_spared),
+        }
+    }
+}
+
+impl fmt::Display for EnergyReport {
+    /// The change and its largest parts, on one line.
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let mut parts = [
+            ("pair", self.pair),
+            ("frozen", self.frozen),
+            ("wake", self.wake),
+            ("wall", self.wall),
+            ("sleep", self.sleep),
+            ("given back", self.given_back),
+            ("fall", self.fall),
+            ("guard", self.guard),
+            ("moving", self.moving),
+            ("growth", self.growth),
+            ("crossing", self.crossing),
+            ("inserted", self.inserted),
+        ];
+        parts.sort_by(|one, other| other.1.abs().total_cmp(&one.1.abs()));
+        write!(f, "{:+.4e}", self.sum)?;
+        let largest = parts.iter().take(4).filter(|(_, energy)| *energy != 0.0);
+        for (place, (name, energy)) in largest.enumerate() {
+            let before = if place == 0 { " = " } else { ", " };
+            write!(f, "{before}{name} {energy:+.3e}")?;
+        }
+        if parts[4].1 != 0.0 {
+            write!(f, ", …")?;
+        }
+        Ok(())
+    }
+}
+
 /// A packing fraction and the heights between which it was taken.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct FractionReport {
@@ -231,6 +343,7 @@ impl fmt::Display for Summary {
             "  energy            {:.6e} kinetic, {:.6e} potential",
             self.kinetic_energy, self.potential_energy
         )?;
+        writeln!(f, "  energy change     {}", self.energy_ledger)?;
         writeln!(f, "  deepest overlap   {:.1e} d", self.max_overlap)?;
         writeln!(
             f,

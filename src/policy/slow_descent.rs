@@ -335,6 +335,28 @@ impl<const D: usize> StatePolicy<D> for SlowDescent {
         WakeDecision::Wake(waking, reason)
     }
 
+    fn check_memory<S: Surroundings<D>>(
+        &self,
+        id: ParticleId,
+        near: &S,
+        memory: &Remembered<D>,
+    ) -> Result<(), String> {
+        if memory
+            .previous_speed
+            .is_some_and(|speed| speed.is_nan() || speed < 0.0)
+        {
+            return Err(format!("it remembers no speed: {memory:?}"));
+        }
+        let Some(asleep) = &memory.asleep else {
+            return Ok(());
+        };
+        let mode = near.particle(id).mode;
+        if mode != Mode::Frozen || asleep.since > near.time() {
+            return Err(format!("{} now, it remembers {asleep:?}", mode.name()));
+        }
+        Ok(())
+    }
+
     fn on_start<S: Surroundings<D>>(
         &self,
         id: ParticleId,

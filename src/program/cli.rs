@@ -12,10 +12,12 @@ Examples:
   grainfall run deposition --seed 2 --set parameters.sleep_speed=0.05
   grainfall preset arch > mine.toml             a scenario to edit
   grainfall run mine.toml --until 10
+  grainfall resume runs/deposition-1            go on after an interruption
   grainfall draw runs/deposition-1 --time 50
+  grainfall validate --quick                    known physics, in a minute
 
 Exit codes:
-  0 done · 1 input or output failed · 2 refused input ·
+  0 done · 1 input or output, or a validation, failed · 2 refused input ·
   3 stopped early (collapse, error) with the state saved ·
   130, 143 stopped by Ctrl-C or SIGTERM, with everything written";
 
@@ -32,9 +34,42 @@ The run folder then holds
   series.csv      counts by mode, events and energies over time
   frames.xyz      all grains at some times (extended XYZ, for OVITO)
   events.csv      every event, if output.events = true
+  audit.json      what audits have found, with --audit
+  checkpoint      the state to go on from, while it is not finished
 
 An earlier run is not overwritten without --force (exit code 2). Ctrl-C ends a
-run early, with everything written (exit code 130); a second one ends it at once.";
+run early, with everything written (exit code 130); a second one ends it at once.
+However a run was ended, `grainfall resume DIR` goes on with it.";
+
+const RESUME_HELP: &str = "\
+Examples:
+  grainfall run deposition --checkpoint-every 10     … and the machine goes down
+  grainfall resume runs/deposition-1
+
+The run goes on from its last checkpoint: what was written after it is cut off
+and written again, and in the end the folder is that of a run that was never
+interrupted, but for the processor time. A checkpoint is written when a run is
+ended by Ctrl-C or SIGTERM, and while it goes on; `grainfall run` without a
+checkpoint but the first starts anew. A run that is finished is left alone.
+
+Exit codes are those of `grainfall run`; 2 also if there is no checkpoint that
+is whole and of this version.";
+
+const CHECKPOINT_HELP: &str = "\
+Write a checkpoint at the multiples of this simulated time, in √(d/g); 0: only
+when interrupted [default: about once a minute]";
+
+const AUDIT_HELP: &str = "\
+Compare the event queue with brute force every K events; a contact that would
+have been missed ends the run (exit code 3). Writes audit.json";
+
+/// A time between checkpoints.
+fn interval(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(every) if every == 0.0 || (1.0e-9..=1.0e9).contains(&every) => Ok(every),
+        _ => Err("a time from 1e-9 to 1e9, or 0, is allowed".to_owned()),
+    }
+}
 
 const SET_HELP: &str = "\
 A value in place of the scenario's, such as parameters.sleep_speed=0.05,
@@ -53,6 +88,8 @@ pub(super) struct Cli {
 pub(super) enum Command {
     /// Run a preset or a scenario file
     Run(RunArguments),
+    /// Go on with a run that was interrupted
+    Resume(ResumeArguments),
     /// List the presets
     Presets,
     /// Print the scenario of a preset, to edit
@@ -68,6 +105,8 @@ pub(super) enum Command {
     Schema,
     /// Draw the grains of a run as SVG
     Draw(DrawArguments),
+    /// Measure known physics and say whether it comes out right
+    Validate(ValidateArguments),
 }
 
 #[derive(Debug, Args)]
@@ -86,9 +125,28 @@ pub(super) struct RunArguments {
     /// Stop at this time, in √(d/g): the same as --set stop.time=T
     #[arg(long, value_name = "T", allow_negative_numbers = true)]
     pub(super) until: Option<f64>,
+    #[arg(long, value_name = "T", value_parser = interval, allow_negative_numbers = true, help = CHECKPOINT_HELP)]
+    pub(super) checkpoint_every: Option<f64>,
+    #[arg(long, value_name = "K", value_parser = clap::value_parser!(u64).range(1..), help = AUDIT_HELP)]
+    pub(super) audit: Option<u64>,
     /// Overwrite an earlier run
     #[arg(long)]
     pub(super) force: bool,
+    /// Show no progress, and no summary at the end
+    #[arg(long, short)]
+    pub(super) quiet: bool,
+}
+
+#[derive(Debug, Args)]
+#[command(after_help = RESUME_HELP)]
+pub(super) struct ResumeArguments {
+    /// The folder of the run
+    #[arg(value_name = "DIR")]
+    pub(super) folder: PathBuf,
+    #[arg(long, value_name = "T", value_parser = interval, allow_negative_numbers = true, help = CHECKPOINT_HELP)]
+    pub(super) checkpoint_every: Option<f64>,
+    #[arg(long, value_name = "K", value_parser = clap::value_parser!(u64).range(1..), help = AUDIT_HELP)]
+    pub(super) audit: Option<u64>,
     /// Show no progress, and no summary at the end
     #[arg(long, short)]
     pub(super) quiet: bool,
@@ -119,5 +177,27 @@ pub(super) struct DrawArguments {
     pub(super) time: Option<f64>,
     /// Where to write [default: picture.svg beside the frames]
     #[arg(long, value_name = "FILE.svg")]
+    pub(super) out: Option<PathBuf>,
+}
+
+#[derive(Debug, Args)]
+#[command(after_help = "\
+Examples:
+  grainfall validate --quick
+  grainfall validate
+  grainfall validate spheres cooling --out results.json
+
+Subjects: spheres, disks, maxwell, cooling, barometer, bounces, diffusion.
+What is allowed was fixed beforehand: four standard errors and the accuracy of
+the reference. The exit code is 1 if anything fails.")]
+pub(super) struct ValidateArguments {
+    /// Which subjects [default: all]
+    #[arg(value_name = "SUBJECT")]
+    pub(super) subjects: Vec<String>,
+    /// Smaller systems and fewer seeds, for about a minute
+    #[arg(long)]
+    pub(super) quick: bool,
+    /// Write the results to this file too, as JSON
+    #[arg(long, value_name = "FILE.json")]
     pub(super) out: Option<PathBuf>,
 }

@@ -1,5 +1,6 @@
 use std::io;
 
+use crate::error::SetupError;
 use crate::output::{FolderError, XyzError};
 use crate::scenario::{Refusal, ScenarioError};
 
@@ -29,6 +30,37 @@ pub enum ProgramError {
         /// Why.
         source: io::Error,
     },
+    /// There is no subject of validation of this name.
+    #[error("there is no subject `{name}` to validate; there are {known}")]
+    UnknownSubject {
+        /// The name.
+        name: String,
+        /// Those that there are.
+        known: String,
+    },
+    /// A system for a validation can't be set up.
+    #[error("the system can't be set up: {0}")]
+    SetUp(#[from] SetupError),
+    /// None of the checkpoints of a run can be used.
+    #[error("{folder} cannot be resumed:{reasons}\n{advice}")]
+    Unresumable {
+        /// The folder.
+        folder: String,
+        /// A line for each checkpoint.
+        reasons: String,
+        /// What to do.
+        advice: String,
+    },
+    /// A run could not be carried on with.
+    #[error(
+        "{source}\nonce that is put right, `grainfall resume {folder}` goes on from the last checkpoint"
+    )]
+    Stopped {
+        /// Why.
+        source: Box<ProgramError>,
+        /// Its folder.
+        folder: String,
+    },
     /// A file of frames can't be read.
     #[error("{file}: {source}")]
     Frames {
@@ -45,6 +77,7 @@ impl ProgramError {
     #[must_use]
     pub fn exit_code(&self) -> u8 {
         match self {
+            ProgramError::Stopped { source, .. } => source.exit_code(),
             ProgramError::Scenario(ScenarioError::Unreadable { .. })
             | ProgramError::Folder(FolderError::Io { .. })
             | ProgramError::Io { .. }
@@ -54,6 +87,9 @@ impl ProgramError {
             } => 1,
             ProgramError::Scenario(ScenarioError::Refused(_))
             | ProgramError::UnknownScenario { .. }
+            | ProgramError::UnknownSubject { .. }
+            | ProgramError::SetUp(_)
+            | ProgramError::Unresumable { .. }
             | ProgramError::Folder(_)
             | ProgramError::Frames { .. } => 2,
         }

@@ -1,5 +1,7 @@
 //! The mean number of normal grains while a deposit grows.
 
+use serde::{Deserialize, Serialize};
+
 use crate::model::{Observer, Occurrence, OccurrenceKind, Surroundings};
 use crate::particle::{Mode, Particle};
 use crate::time::Time;
@@ -11,7 +13,7 @@ const FROM: f64 = 0.25;
 
 /// Integrates the number of normal grains over time and keeps the integral at
 /// each landing, that is, at the first collision of each falling grain.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Serialize, Deserialize)]
 pub(super) struct NormalMean {
     /// By id: still falling.
     falling: Vec<bool>,
@@ -47,6 +49,16 @@ impl NormalMean {
         if grain.mode == Mode::Normal {
             self.change(1, now);
         }
+    }
+
+    /// Whether this can be a mean over `grains` grains; one that was read from a
+    /// file may be anything.
+    pub(super) fn is_of(&self, grains: usize) -> bool {
+        let falling = self.falling.iter().filter(|falls| **falls).count();
+        self.falling.len() == grains
+            && self.left == falling
+            && self.normal.unsigned_abs() <= grains as u64
+            && !self.landings.is_empty()
     }
 
     /// How many grains have landed.

@@ -1,14 +1,16 @@
 //! The command `run`.
 
-use std::path::PathBuf;
+use std::path::{Path as FilePath, PathBuf};
 
 use toml::Value;
 
 use crate::output::RunFolder;
 use crate::program::cli::RunArguments;
-use crate::program::drive::{Job, drive};
+use crate::program::drive::{self, Job};
 use crate::program::error::ProgramError;
-use crate::program::load::load;
+use crate::program::load::{Loaded, load};
+use crate::program::show::check_grains;
+use crate::program::signals::Signals;
 use crate::scenario::{Assignment, Dimension, Gravity, Path, Scenario, Start};
 
 pub(super) fn run(arguments: &RunArguments) -> Result<u8, ProgramError> {
@@ -20,27 +22,56 @@ pub(super) fn run(arguments: &RunArguments) -> Result<u8, ProgramError> {
         .unwrap_or_else(|| PathBuf::from("runs").join(format!("{}-{seed}", loaded.name)));
     // Before grains are made, which may take a while.
     RunFolder::check(&folder, arguments.force)?;
-    let job = Job {
-        origin: loaded.origin,
-        scenario: loaded.scenario,
-        folder,
-        force: arguments.force,
-        quiet: arguments.quiet,
-    };
-    match job.scenario.dimension {
-        Dimension::Two => start::<2>(&job),
-        Dimension::Three => start::<3>(&job),
+    match loaded.scenario.dimension {
+        Dimension::Two => begin::<2>(arguments, loaded, &folder),
+        Dimension::Three => begin::<3>(arguments, loaded, &folder),
     }
 }
 
-/// Picks the model: without gravity nobody sleeps.
-fn start<const D: usize>(job: &Job) -> Result<u8, ProgramError> {
+/// Refuses what can be refused at once, makes the folder, and starts.
+fn begin<const D: usize>(
+    arguments: &RunArguments,
+    loaded: Loaded,
+    folder: &FilePath,
+) -> Result<u8, ProgramError> {
+    let Loaded {
+        origin, scenario, ..
+    } = loaded;
+    let given = check_grains::<D>(&origin, &scenario)?;
+    let signals = Signals::listen().map_err(ProgramError::io("signals"))?;
+    let folder = RunFolder::create(folder, arguments.force)?;
+    let text = drive::begin(&folder, &scenario, given.files())?;
+    drop(given);
+    let _lock = folder.lock()?;
+    let job = Job {
+        origin,
+        scenario,
+        folder,
+        text,
+        checkpoint_every: arguments.checkpoint_every,
+        audit: arguments.audit,
+        quiet: arguments.quiet,
+    };
+    let done = start::<D>(&job, &signals);
+    if let Err(ProgramError::Scenario(_)) = done {
+        job.folder.discard();
+    }
+    done
+}
+
+/// Makes the grains and picks the model: without gravity nobody sleeps.
+pub(super) fn start<const D: usize>(job: &Job, signals: &Signals) -> Result<u8, ProgramError> {
     let start = Start::<D>::new(&job.origin, &job.scenario)?;
-    let boundary = start.boundary.clone();
     let scenario: &Scenario = &job.scenario;
     match scenario.gravity {
-        Gravity::None => drive(job, start, scenario.floating_model(boundary)),
-        Gravity::Down(_) | Gravity::Along(_) => drive(job, start, scenario.gravity_model(boundary)),
+        Gravity::None => {
+            let model = |boundary| scenario.floating_model(boundary);
+            drive::drive(job, start, model, signals)
+        }
+        Gravity::Down(_) | Gravity::Along(_) => {
+            let model = |boundary| scenario.gravity_model(boundary);
+            drive::drive(job, start, model, signals)
+        }
     }
 }
 

@@ -49,8 +49,8 @@ pub(super) fn check(arguments: &CheckArguments) -> Result<u8, ProgramError> {
     let loaded = load(&arguments.scenario, arguments.set.clone())?;
     let (origin, scenario) = (&loaded.origin, &loaded.scenario);
     let given = match scenario.dimension {
-        Dimension::Two => check_grains::<2>(origin, scenario)?,
-        Dimension::Three => check_grains::<3>(origin, scenario)?,
+        Dimension::Two => check_grains::<2>(origin, scenario)?.grains.len(),
+        Dimension::Three => check_grains::<3>(origin, scenario)?.grains.len(),
     };
     let mut parts = Vec::new();
     if given > 0 {
@@ -77,11 +77,11 @@ pub(super) fn check(arguments: &CheckArguments) -> Result<u8, ProgramError> {
 }
 
 /// Checks the grains that are written out or stand in files against each other
-/// and the walls, and says how many there are.
-fn check_grains<const D: usize>(
+/// and the walls, and returns them.
+pub(super) fn check_grains<const D: usize>(
     origin: &Origin,
     scenario: &Scenario,
-) -> Result<usize, ScenarioError> {
+) -> Result<Start<D>, ScenarioError> {
     let start = Start::<D>::given(origin, scenario)?;
     let (grains, boundary): (_, Cuboid<D>) = (start.grains.clone(), start.boundary.clone());
     let settings = scenario.settings();
@@ -94,5 +94,5 @@ fn check_grains<const D: usize>(
         }
     };
     tried.map_err(|error| start.refuse(origin, scenario, error))?;
-    Ok(start.grains.len())
+    Ok(start)
 }

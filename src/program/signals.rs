@@ -11,21 +11,29 @@ use signal_hook::flag;
 /// the process at once.
 pub(super) struct Signals {
     exit_code: Arc<AtomicUsize>,
+    /// Whether the next signal ends the process at once.
+    at_once: Arc<AtomicBool>,
 }
 
 impl Signals {
-    /// Listens from now on.
+    /// Listens from now on. Until the run has begun there is nothing to end in
+    /// good order: a signal ends the process at once, with its exit code.
     pub(super) fn listen() -> io::Result<Self> {
         let exit_code = Arc::new(AtomicUsize::new(0));
-        let asked = Arc::new(AtomicBool::new(false));
+        let at_once = Arc::new(AtomicBool::new(true));
         for signal in [SIGINT, SIGTERM] {
             let code = 128 + signal;
             // First, so that it sees what earlier signals have left.
-            flag::register_conditional_shutdown(signal, code, Arc::clone(&asked))?;
-            flag::register(signal, Arc::clone(&asked))?;
+            flag::register_conditional_shutdown(signal, code, Arc::clone(&at_once))?;
+            flag::register(signal, Arc::clone(&at_once))?;
             flag::register_usize(signal, Arc::clone(&exit_code), code as usize)?;
         }
-        Ok(Signals { exit_code })
+        Ok(Signals { exit_code, at_once })
+    }
+
+    /// The run begins: a first signal asks it to end.
+    pub(super) fn begin(&self) {
+        self.at_once.store(false, Ordering::Relaxed);
     }
 
     /// The exit code that belongs to the signal that has come, if any.

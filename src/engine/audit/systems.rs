@@ -4,7 +4,7 @@ use rand::{Rng, RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 
 use super::restless::Restless;
-use super::{audit, hash_of};
+use super::{audit, hash_of, restart};
 use crate::boundary::{Cuboid, Side};
 use crate::collide::Restitution;
 use crate::dynamics::{ForceFree, Growing, UniformGravity};
@@ -259,15 +259,15 @@ where
     Y::Flight: PolynomialFlight<D>,
     S: StatePolicy<D> + Clone,
 {
+    let parts = || Parts {
+        dynamics: dynamics.clone(),
+        predictor: Polynomial,
+        collision_rule: case.rule,
+        state_policy: policy.clone(),
+        boundary: case.boundary.clone(),
+    };
     let start = || {
-        let parts = Parts {
-            dynamics: dynamics.clone(),
-            predictor: Polynomial,
-            collision_rule: case.rule,
-            state_policy: policy.clone(),
-            boundary: case.boundary.clone(),
-        };
-        Simulation::with_settings(parts, case.grains.clone(), case.settings)
+        Simulation::with_settings(parts(), case.grains.clone(), case.settings)
             .map_err(|error| format!("refused: {error}"))
     };
     let events = u64::from(case.events);
@@ -278,5 +278,6 @@ where
     if whole != sliced {
         return Err("the trajectory depends on stops and neighbour lists".into());
     }
+    restart(case, parts, start()?, start()?)?;
     audit(case, start()?)
 }

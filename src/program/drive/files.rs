@@ -1,12 +1,15 @@
 //! The files of a run while it goes on.
 
 use std::fs::File;
-use std::io::{BufWriter, Write};
+use std::io::{BufWriter, Seek, Write};
 use std::time::{Duration, Instant};
+
+use serde::{Deserialize, Serialize};
 
 use crate::engine::Simulation;
 use crate::model::Model;
-use crate::output::{EventLog, Frame, RunFolder, Series, SeriesRow};
+use crate::output::{Checkpoint, EventLog, Frame, RunFolder, Series, SeriesRow};
+use crate::program::drive::state::{Unusable, nothing_yet};
 use crate::program::error::ProgramError;
 use crate::scenario::Scenario;
 use crate::time::Time;
@@ -27,37 +30,130 @@ pub(super) struct Files {
     last_frame: Option<(Time, u64)>,
 }
 
+/// How far the files have got.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub(super) struct SavedFiles {
+    /// Lengths in bytes.
+    series: u64,
+    frames: u64,
+    events: Option<u64>,
+    last_row: Option<(Time, u64)>,
+    last_frame: Option<(Time, u64)>,
+}
+
+/// Writes what says what is run: the files that the scenario names, a
+/// checkpoint that says that nothing has been set up, and `scenario.toml`. The
+/// last comes last: where it is, a run can be resumed.
+pub(in crate::program) fn begin(
+    folder: &RunFolder,
+    scenario: &Scenario,
+    inputs: &[(usize, Frame)],
+) -> Result<Vec<u8>, ProgramError> {
+    let mut resolved = scenario.clone();
+    for (index, frame) in inputs {
+        let name = format!("input-{index}.xyz");
+        let mut text = Vec::new();
+        frame
+            .write(&mut text)
+            .map_err(ProgramError::io(name.clone()))?;
+        folder.write(&name, &text)?;
+        resolved.grains[*index].file = Some(name);
+    }
+    let text = toml::to_string(&resolved)
+        .map_err(|error| ProgramError::io("scenario.toml")(std::io::Error::other(error)))?;
+    let head = format!(
+        "# As run by grainfall {}, with every default written out.\n\n",
+        env!("CARGO_PKG_VERSION")
+    );
+    let text = (head + &text).into_bytes();
+    write_checkpoint(folder, &Checkpoint::new(&text, nothing_yet()))?;
+    folder.write("scenario.toml", &text)?;
+    Ok(text)
+}
+
+pub(super) fn write_checkpoint(
+    folder: &RunFolder,
+    checkpoint: &Checkpoint,
+) -> Result<(), ProgramError> {
+    let name = folder.file("checkpoint").display().to_string();
+    checkpoint.write(folder).map_err(ProgramError::io(name))
+}
+
 impl Files {
-    /// Writes `scenario.toml`, with the files it names beside it, and begins
-    /// the others.
+    /// Begins the files.
     pub(super) fn create(
         folder: &RunFolder,
         scenario: &Scenario,
-        inputs: &[(usize, Frame)],
-    ) -> Result<Self, ProgramError> {
-        let mut resolved = scenario.clone();
-        for (index, frame) in inputs {
-            let name = format!("input-{index}.xyz");
-            let mut text = Vec::new();
-            frame
-                .write(&mut text)
-                .map_err(ProgramError::io(name.clone()))?;
-            folder.write(&name, &text)?;
-            resolved.grains[*index].file = Some(name);
-        }
-        let text = toml::to_string(&resolved)
-            .map_err(|error| ProgramError::io("scenario.toml")(std::io::Error::other(error)))?;
-        let head = format!(
-            "# As run by grainfall {}, with every default written out.\n\n",
-            env!("CARGO_PKG_VERSION")
-        );
-        folder.write("scenario.toml", (head + &text).as_bytes())?;
-        Ok(Files {
+    ) -> Result<(Self, Option<Log>), ProgramError> {
+        let files = Files {
             series: Series::new(folder.create_file("series.csv")?),
             frames: BufWriter::new(folder.create_file("frames.xyz")?),
             flushed: Instant::now(),
             last_row: None,
             last_frame: None,
+        };
+        let log = match scenario.output.events {
+            true => Some(EventLog::new(folder.create_file("events.csv")?)),
+            false => None,
+        };
+        Ok((files, log))
+    }
+
+    /// Goes on with the files of an earlier run, cut back to where it was.
+    pub(super) fn continued(
+        folder: &RunFolder,
+        scenario: &Scenario,
+        saved: &SavedFiles,
+    ) -> Result<(Self, Option<Log>), Unusable> {
+        if saved.events.is_some() != scenario.output.events {
+            return Err(Unusable::State(
+                "its files are not the scenario's".to_owned(),
+            ));
+        }
+        let mut lengths = vec![("series.csv", saved.series), ("frames.xyz", saved.frames)];
+        lengths.extend(saved.events.map(|length| ("events.csv", length)));
+        // All of them, before anything is cut.
+        for (name, length) in lengths {
+            folder
+                .check_length(name, length)
+                .map_err(|error| Unusable::State(error.to_string()))?;
+        }
+        let cut = |name, at| folder.cut_file(name, at).map_err(ProgramError::from);
+        let series = cut("series.csv", saved.series)?;
+        let files = Files {
+            series: match saved.series {
+                0 => Series::new(series),
+                _ => Series::continued(series),
+            },
+            frames: BufWriter::new(cut("frames.xyz", saved.frames)?),
+            flushed: Instant::now(),
+            last_row: saved.last_row,
+            last_frame: saved.last_frame,
+        };
+        let log = match saved.events {
+            Some(at) => Some(EventLog::continued(cut("events.csv", at)?, at > 0)),
+            None => None,
+        };
+        Ok((files, log))
+    }
+
+    /// How far they have got, all of it on the disk.
+    pub(super) fn save(&mut self, log: Option<&mut Log>) -> Result<SavedFiles, ProgramError> {
+        self.flush()?;
+        let events = match log {
+            Some(log) => {
+                let failed = |error: csv::Error| ProgramError::io("events.csv")(error.into());
+                log.flush().map_err(failed)?;
+                Some(length("events.csv", log.get_ref())?)
+            }
+            None => None,
+        };
+        Ok(SavedFiles {
+            series: length("series.csv", self.series.get_ref())?,
+            frames: length("frames.xyz", self.frames.get_ref())?,
+            events,
+            last_row: self.last_row,
+            last_frame: self.last_frame,
         })
     }
 
@@ -107,6 +203,14 @@ impl Files {
             .map_err(ProgramError::io("series.csv"))?;
         self.frames.flush().map_err(ProgramError::io("frames.xyz"))
     }
+}
+
+/// The length of a file that has been written up to its end, once it is on the
+/// disk.
+fn length(name: &str, mut file: &File) -> Result<u64, ProgramError> {
+    file.sync_data()
+        .and_then(|()| file.stream_position())
+        .map_err(ProgramError::io(name))
 }
 
 /// The same number, but 0 for −0, which sums of nothing are.

@@ -2,6 +2,8 @@
 
 use std::time::{Duration, Instant};
 
+use serde::{Deserialize, Serialize};
+
 use crate::time::Time;
 
 /// Slices take about this long, so that signals are noticed soon.
@@ -52,33 +54,6 @@ impl Pace {
     }
 }
 
-/// A run without an end in time ends when nothing has happened for so long, in
-/// √(d/g).
-const QUIET: f64 = 1.0e6;
-
-/// Whether anything still happens.
-pub(super) struct Quiet {
-    events: u64,
-    since: Time,
-}
-
-impl Quiet {
-    pub(super) fn new(now: Time) -> Self {
-        Quiet {
-            events: 0,
-            since: now,
-        }
-    }
-
-    /// True if nothing has happened for a very long time.
-    pub(super) fn lasts(&mut self, now: Time, events: u64) -> bool {
-        if events != self.events {
-            (self.events, self.since) = (events, now);
-        }
-        now - self.since >= QUIET
-    }
-}
-
 /// The times at which rows and frames are due: the multiples of two intervals.
 pub(super) struct Samples {
     rows: Beat,
@@ -126,6 +101,15 @@ impl Beat {
     }
 }
 
+/// How far the samples have got.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub(super) struct SavedSamples {
+    rows: f64,
+    frames: f64,
+    events: u64,
+    idle: u32,
+}
+
 impl Samples {
     pub(super) fn new(rows: f64, frames: f64) -> Self {
         Samples {
@@ -136,32 +120,117 @@ impl Samples {
         }
     }
 
-    /// When the next sample is due.
-    pub(super) fn next(&self) -> Time {
-        if self.idle < IDLE_SAMPLES {
-            self.rows.next().min(self.frames.next())
-        } else {
-            Time::NEVER
+    pub(super) fn save(&self) -> SavedSamples {
+        SavedSamples {
+            rows: self.rows.count,
+            frames: self.frames.count,
+            events: self.events,
+            idle: self.idle,
         }
     }
 
-    /// What is due now, after `events` events.
+    /// Samples that have got as far; `None` if nothing can have.
+    pub(super) fn restore(rows: f64, frames: f64, saved: &SavedSamples) -> Option<Self> {
+        // Up to here counting on finds the next whole number.
+        let is_count = |count: f64| (1.0..1.0e15).contains(&count);
+        (is_count(saved.rows) && is_count(saved.frames)).then_some(Samples {
+            rows: Beat {
+                every: rows,
+                count: saved.rows,
+            },
+            frames: Beat {
+                every: frames,
+                count: saved.frames,
+            },
+            events: saved.events,
+            idle: saved.idle,
+        })
+    }
+
+    /// When the next sample is due.
+    pub(super) fn next(&self) -> Time {
+        if self.is_idle() {
+            Time::NEVER
+        } else {
+            self.rows.next().min(self.frames.next())
+        }
+    }
+
+    /// Whether no more samples are taken until something happens.
+    pub(super) fn is_idle(&self) -> bool {
+        self.idle >= IDLE_SAMPLES
+    }
+
+    /// Something has happened again, now: samples are taken from here on.
+    pub(super) fn wake(&mut self, now: Time, events: u64) {
+        (self.events, self.idle) = (events, 0);
+        self.rows.pass(now);
+        self.frames.pass(now);
+    }
+
+    /// What is due now, after `events` events; to be asked whenever something
+    /// is, and only then, so that it does not depend on the computer's speed.
     pub(super) fn due(&mut self, now: Time, events: u64) -> Due {
-        let mut due = Due {
+        if events == self.events {
+            self.idle += 1;
+        } else {
+            (self.events, self.idle) = (events, 0);
+        }
+        Due {
             row: self.rows.pass(now),
             frame: self.frames.pass(now),
-        };
-        if events != self.events {
-            (self.events, self.idle) = (events, 0);
-        } else if self.idle >= IDLE_SAMPLES {
-            due = Due {
-                row: false,
-                frame: false,
-            };
-        } else if due.row || due.frame {
-            self.idle += 1;
         }
-        due
+    }
+}
+
+/// When to write a checkpoint.
+pub(super) struct Cadence {
+    /// At the multiples of a simulated time, or by the clock on the wall.
+    beat: Option<Beat>,
+    last: Instant,
+    took: Duration,
+}
+
+/// By the clock on the wall, a checkpoint is written this often, …
+const CHECKPOINT_EVERY: Duration = Duration::from_secs(60);
+/// … but less often if it takes more than this part of the time.
+const CHECKPOINT_SHARE: u32 = 50;
+
+impl Cadence {
+    /// Every `every` √(d/g) after `now`, never if that is 0, or else by the
+    /// clock on the wall.
+    pub(super) fn new(every: Option<f64>, now: Time) -> Self {
+        let mut beat = every.map(Beat::new);
+        if let Some(beat) = &mut beat {
+            beat.pass(now);
+        }
+        Cadence {
+            beat,
+            last: Instant::now(),
+            took: Duration::ZERO,
+        }
+    }
+
+    /// Until when the next one can wait.
+    pub(super) fn next(&self) -> Time {
+        self.beat.as_ref().map_or(Time::NEVER, Beat::next)
+    }
+
+    /// Whether one is due now.
+    pub(super) fn is_due(&mut self, now: Time) -> bool {
+        match &mut self.beat {
+            Some(beat) => beat.pass(now),
+            None => {
+                let pause = CHECKPOINT_EVERY.max(self.took * CHECKPOINT_SHARE);
+                self.last.elapsed() >= pause
+            }
+        }
+    }
+
+    /// One has been written, which was begun at an instant.
+    pub(super) fn written(&mut self, begun: Instant) {
+        self.last = Instant::now();
+        self.took = self.last - begun;
     }
 }
 
@@ -196,6 +265,20 @@ mod tests {
         let due = samples.due(Time::from_units(0.5), 3);
         assert!(!due.row && !due.frame);
         assert_eq!(samples.next(), Time::from_units(1.0));
+        let back = Samples::restore(1.0, 0.0, &samples.save()).unwrap();
+        assert_eq!(back.next(), samples.next());
+    }
+
+    #[test]
+    fn checkpoints_are_at_the_multiples() {
+        let mut cadence = Cadence::new(Some(0.5), Time::from_units(3.2));
+        assert_eq!(cadence.next(), Time::from_units(3.5));
+        assert!(!cadence.is_due(Time::from_units(3.4)));
+        assert!(cadence.is_due(Time::from_units(3.5)));
+        assert_eq!(cadence.next(), Time::from_units(4.0));
+        let mut never = Cadence::new(Some(0.0), Time::ZERO);
+        assert!(!never.is_due(Time::from_units(1.0e9)));
+        assert_eq!(never.next(), Time::NEVER);
     }
 
     #[test]
@@ -205,8 +288,9 @@ mod tests {
             assert!(samples.due(samples.next(), 0).row);
         }
         assert_eq!(samples.next(), Time::NEVER);
-        assert!(!samples.due(Time::from_units(1.0e6), 0).row);
-        assert!(!samples.due(Time::from_units(2.0e6 + 0.5), 1).row || samples.idle == 0);
+        assert!(samples.is_idle());
+        samples.wake(Time::from_units(2.0e6 + 0.5), 1);
         assert_eq!(samples.next(), Time::from_units(2_000_001.0));
+        assert!(samples.due(samples.next(), 1).row);
     }
 }

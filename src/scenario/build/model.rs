@@ -4,6 +4,7 @@ use crate::boundary::{self, Cuboid};
 use crate::collide::Restitution;
 use crate::dynamics::{ForceFree, UniformGravity};
 use crate::engine::{self, Settings};
+use crate::error::SetupError;
 use crate::model::Parts;
 use crate::particle::Vector;
 use crate::policy::{self, Never, SlowDescent};
@@ -181,6 +182,25 @@ impl Scenario {
             }
         }
         (lengths, origin, periodic)
+    }
+
+    /// The box of a run in which these axes, by origin and length, are periodic:
+    /// those of a gas are not in the scenario.
+    ///
+    /// # Errors
+    ///
+    /// When a period is none.
+    pub fn boundary_with<const D: usize>(
+        &self,
+        periods: &[Option<(f64, f64)>],
+    ) -> Result<Cuboid<D>, SetupError> {
+        let mut sides = self.sides::<D>();
+        for (side, period) in sides.iter_mut().zip(periods) {
+            if let Some((origin, length)) = *period {
+                *side = boundary::Side::Periodic { origin, length };
+            }
+        }
+        Cuboid::new(sides)
     }
 
     pub(super) fn sides<const D: usize>(&self) -> [boundary::Side; D] {

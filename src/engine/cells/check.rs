@@ -1,0 +1,44 @@
+//! Whether the grid's book-keeping holds.
+
+use crate::engine::cells::{Cells, NONE};
+use crate::particle::Vector;
+
+/// How far beyond the edge of its cell, over that edge, rounding may put a
+/// grain: periods are taken off its place and off its cell separately.
+const ROUND: f64 = 1.0e-9;
+
+impl<const D: usize> Cells<D> {
+    /// A grain has to sit in the cell of its anchor, and on that cell's list.
+    pub(in crate::engine) fn check_seat(
+        &self,
+        particle: u32,
+        anchor: &Vector<D>,
+    ) -> Result<(), String> {
+        let seat = &self.seats[particle as usize];
+        for axis in 0..D {
+            let this = &self.axes[axis];
+            let cell = f64::from(seat.cell[axis]);
+            let mut place = (anchor[axis] - this.origin) / this.edge;
+            if this.period.is_none() {
+                place = place.clamp(0.0, f64::from(this.count) - ROUND);
+            }
+            if place < cell - ROUND || place > cell + 1.0 + ROUND {
+                return Err(format!(
+                    "grain {particle} sits in cell {cell} along axis {axis}, not in {place}"
+                ));
+            }
+        }
+        let follows = match seat.previous {
+            NONE => self.heads[self.index_of(particle)] == particle,
+            previous => {
+                self.seats[previous as usize].next == particle
+                    && self.index_of(previous) == self.index_of(particle)
+            }
+        };
+        let precedes = seat.next == NONE || self.seats[seat.next as usize].previous == particle;
+        if !follows || !precedes {
+            return Err(format!("grain {particle} is not linked in its cell"));
+        }
+        Ok(())
+    }
+}

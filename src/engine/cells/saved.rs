@@ -1,0 +1,116 @@
+//! A grid that is saved and made again, with everybody in the same order: who
+//! comes first in a cell is predicted first.
+
+use nalgebra::SVector;
+use serde::{Deserialize, Serialize};
+
+use crate::engine::cells::{Axis, Cells, NONE, Seat};
+use crate::model::Boundary;
+
+/// No cell of a run has coordinates beyond this.
+const FARTHEST: i32 = 1 << 30;
+
+/// What a grid is made again from.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(bound = "")]
+pub(in crate::engine) struct SavedCells<const D: usize> {
+    /// Origin, edge and number of cells along each axis.
+    axes: Vec<(f64, f64, i32)>,
+    /// By grain.
+    cells: Vec<SVector<i32, D>>,
+    /// In which order the grains have to be seated: cell by cell, the last of
+    /// each first.
+    order: Vec<u32>,
+}
+
+impl<const D: usize> Cells<D> {
+    pub(in crate::engine) fn save(&self) -> SavedCells<D> {
+        let mut order = Vec::with_capacity(self.seats.len());
+        for &head in &self.heads {
+            let from = order.len();
+            let mut particle = head;
+            while particle != NONE {
+                order.push(particle);
+                particle = self.seats[particle as usize].next;
+            }
+            order[from..].reverse();
+        }
+        SavedCells {
+            axes: self
+                .axes
+                .iter()
+                .map(|axis| (axis.origin, axis.edge, axis.count))
+                .collect(),
+            cells: self
+                .seats
+                .iter()
+                .map(|seat| SVector::from(seat.cell))
+                .collect(),
+            order,
+        }
+    }
+
+    /// The grid of `count` grains that was saved.
+    ///
+    /// # Errors
+    ///
+    /// Says what does not fit.
+    pub(in crate::engine) fn restore<B: Boundary<D>>(
+        boundary: &B,
+        saved: &SavedCells<D>,
+        count: usize,
+    ) -> Result<Self, &'static str> {
+        if saved.axes.len() != D || saved.cells.len() != count || saved.order.len() != count {
+            return Err("the grid is not for these grains");
+        }
+        let mut stride: usize = 1;
+        let mut axes = Vec::with_capacity(D);
+        for (axis, &(origin, edge, along)) in saved.axes.iter().enumerate() {
+            let period = boundary.period(axis);
+            let fits = period.is_none_or(|period| {
+                origin == period.origin && edge == period.length / f64::from(along)
+            });
+            if along < 1 || !(edge > 0.0 && edge.is_finite() && origin.is_finite()) || !fits {
+                return Err("the grid is not one for this box");
+            }
+            axes.push(Axis {
+                origin,
+                edge,
+                count: along,
+                stride,
+                period,
+            });
+            stride = stride
+                .checked_mul(along as usize)
+                // As many as a grid is ever given.
+                .filter(|cells| *cells <= 16 * count + 4096)
+                .ok_or("the grid has too many cells")?;
+        }
+        let axes = <[Axis; D]>::try_from(axes).map_err(|_| "the grid has too few axes")?;
+        let mut seats = Vec::with_capacity(count);
+        for cell in &saved.cells {
+            if cell.iter().any(|along| along.abs_diff(0) > FARTHEST as u32) {
+                return Err("a grain lies in no cell");
+            }
+            seats.push(Seat {
+                cell: (*cell).into(),
+                next: NONE,
+                previous: NONE,
+            });
+        }
+        let mut cells = Cells {
+            axes,
+            heads: vec![NONE; stride],
+            seats,
+        };
+        let mut seated = vec![false; count];
+        for &particle in &saved.order {
+            match seated.get_mut(particle as usize) {
+                Some(seated) if !*seated => *seated = true,
+                _ => return Err("a grain is seated twice"),
+            }
+            cells.link(particle);
+        }
+        Ok(cells)
+    }
+}

@@ -1,0 +1,138 @@
+//! Whether the lists' book-keeping holds.
+
+use crate::engine::cells::Found;
+use crate::engine::neighbours::Neighbours;
+use crate::particle::Vector;
+
+/// Leaves room for rounding.
+const ROUND: f64 = 1.0 - 1.0e-9;
+
+impl<const D: usize> Neighbours<D> {
+    /// A grain that is now at `position` has to be on its leash, in its cell,
+    /// and on the list of everybody on its own.
+    pub(in crate::engine) fn check_tie(
+        &self,
+        particle: u32,
+        position: &Vector<D>,
+    ) -> Result<(), String> {
+        let tie = &self.ties[particle as usize];
+        self.cells.check_seat(particle, &tie.anchor)?;
+        let strayed = (position - tie.anchor).norm();
+        // Rounding of the place itself, far from the origin.
+        let rounding = 1.0e-12 * (self.largest + position.norm());
+        if strayed > tie.leash + rounding {
+            return Err(format!(
+                "grain {particle} is {strayed} from its anchor, on a leash of {}",
+                tie.leash
+            ));
+        }
+        if tie.leash == 0.0 && !tie.list.is_empty() {
+            return Err(format!("grain {particle} is at rest and has a list"));
+        }
+        for (place, entry) in tie.list.iter().enumerate() {
+            let Some(other) = self.ties.get(entry.particle as usize) else {
+                return Err(format!(
+                    "grain {particle} lists {entry:?}, who is not there"
+                ));
+            };
+            if tie.list[..place].contains(entry) {
+                return Err(format!("grain {particle} lists {entry:?} twice"));
+            }
+            if other.leash > 0.0 && !other.list.contains(&entry.seen_from(particle)) {
+                return Err(format!(
+                    "grain {particle} lists {entry:?}, who does not list it"
+                ));
+            }
+        }
+        Ok(())
+    }
+
+    /// Whoever two leashes let touch has to be on the list of a grain.
+    pub(in crate::engine) fn check_complete(
+        &self,
+        particle: u32,
+        radius_of: impl Fn(u32) -> f64,
+    ) -> Result<(), String> {
+        let tie = &self.ties[particle as usize];
+        if tie.leash == 0.0 {
+            return Ok(());
+        }
+        for (other, their) in self.ties.iter().enumerate() {
+            if other == particle as usize {
+                continue;
+            }
+            let apart = their.anchor - tie.anchor;
+            let contact = radius_of(particle) + radius_of(other as u32);
+            let reach = ROUND * (contact + tie.leash + their.leash);
+            let mut absent = None;
+            self.for_each_image(&apart, reach, |turns| {
+                let found = Found {
+                    particle: other as u32,
+                    turns,
+                };
+                if !tie.list.contains(&found) {
+                    absent = Some(found);
+                }
+            });
+            if let Some(absent) = absent {
+                return Err(format!("grain {particle} does not list {absent:?}"));
+            }
+        }
+        Ok(())
+    }
+
+    /// Calls `visit` for every image of a vector that is shorter than `reach`.
+    fn for_each_image(&self, apart: &Vector<D>, reach: f64, mut visit: impl FnMut([i32; D])) {
+        let mut low = [0; D];
+        let mut high = [0; D];
+        for axis in 0..D {
+            let period = self.periods[axis];
+            if period > 0.0 {
+                low[axis] = libm::ceil((-reach - apart[axis]) / period) as i32;
+                high[axis] = libm::floor((reach - apart[axis]) / period) as i32;
+            } else if apart[axis].abs() >= reach {
+                return;
+            }
+            if low[axis] > high[axis] {
+                return;
+            }
+        }
+        let mut turns = low;
+        loop {
+            let image: Vector<D> = Vector::from_fn(|axis, _| {
+                apart[axis] + f64::from(turns[axis]) * self.periods[axis]
+            });
+            if image.norm_squared() < reach * reach {
+                visit(turns);
+            }
+            let mut axis = 0;
+            while axis < D && turns[axis] == high[axis] {
+                turns[axis] = low[axis];
+                axis += 1;
+            }
+            if axis == D {
+                return;
+            }
+            turns[axis] += 1;
+        }
+    }
+}
+
+#[cfg(test)]
+impl<const D: usize> Neighbours<D> {
+    /// Plants a fault: a grain forgets the first on its list; told who it was.
+    pub(in crate::engine) fn forget_first(&mut self, particle: u32) -> Found<D> {
+        self.ties[particle as usize].list.swap_remove(0)
+    }
+
+    /// Plants a fault: a grain is not on the list of another.
+    pub(in crate::engine) fn forget(&mut self, particle: u32, entry: Found<D>) {
+        let list = &mut self.ties[particle as usize].list;
+        list.retain(|found| *found != entry);
+    }
+
+    /// Plants a fault: a grain is filed in another cell than its own.
+    pub(in crate::engine) fn misfile(&mut self, particle: u32, position: &Vector<D>) {
+        self.cells.refile(particle, position);
+    }
+}

@@ -1,0 +1,146 @@
+//! The command `resume`.
+
+use std::fs;
+use std::io;
+
+use crate::output::{Checkpoint, CheckpointError, RunFolder, StoppedBy, Summary};
+use crate::program::cli::ResumeArguments;
+use crate::program::drive::{Attempt, Job, go_on};
+use crate::program::error::ProgramError;
+use crate::program::run::start;
+use crate::program::show::say;
+use crate::program::signals::Signals;
+use crate::scenario::{Dimension, Gravity, read};
+
+pub(super) fn resume(arguments: &ResumeArguments) -> Result<u8, ProgramError> {
+    let folder = RunFolder::open(&arguments.folder)?;
+    let _lock = folder.lock()?;
+    if let Some(reason) = finished(&folder) {
+        // Of a run that was killed at its very end.
+        tidy(&folder)?;
+        Checkpoint::clear(&folder).map_err(access(&folder, "checkpoint"))?;
+        if !arguments.quiet {
+            let shown = folder.path().display();
+            say(&format!(
+                "{shown}: finished already ({reason}); nothing to do"
+            ))?;
+        }
+        return Ok(0);
+    }
+    let file = folder.file("scenario.toml");
+    let (origin, scenario) = read(&file, Vec::new())?;
+    let text = fs::read(&file).map_err(access(&folder, "scenario.toml"))?;
+    let signals = Signals::listen().map_err(ProgramError::io("signals"))?;
+    let job = Job {
+        origin,
+        scenario,
+        folder,
+        text,
+        checkpoint_every: arguments.checkpoint_every,
+        audit: arguments.audit,
+        quiet: arguments.quiet,
+    };
+    match job.scenario.dimension {
+        Dimension::Two => newest_good::<2>(&job, &signals),
+        Dimension::Three => newest_good::<3>(&job, &signals),
+    }
+}
+
+/// Goes on from the newest checkpoint that is good.
+fn newest_good<const D: usize>(job: &Job, signals: &Signals) -> Result<u8, ProgramError> {
+    let mut reasons = String::new();
+    for (name, found) in Checkpoint::all(&job.folder) {
+        let shown = job.folder.file(name).display().to_string();
+        let unusable = match found {
+            Err(CheckpointError::Io(source)) => {
+                return Err(ProgramError::Io {
+                    file: shown,
+                    source,
+                });
+            }
+            Err(error) => error.to_string(),
+            Ok(checkpoint) if !checkpoint.is_of(&job.text) => {
+                "is of another scenario: scenario.toml has been changed".to_owned()
+            }
+            Ok(checkpoint) => {
+                let skipped = &reasons;
+                match attempt::<D>(job, &checkpoint.state, signals, skipped, &shown)? {
+                    Attempt::Done(code) => return Ok(code),
+                    Attempt::NothingYet => {
+                        prepare(job, skipped, &shown)?;
+                        return start::<D>(job, signals);
+                    }
+                    Attempt::Unusable(reason) => format!("is unusable: {reason}"),
+                }
+            }
+        };
+        reasons.push_str(&format!("\n  {shown} {unusable}"));
+    }
+    Err(ProgramError::Unresumable {
+        folder: job.folder.path().display().to_string(),
+        reasons,
+        advice: format!(
+            "`grainfall run {} --out ANOTHER` runs the same from the start",
+            job.folder.file("scenario.toml").display()
+        ),
+    })
+}
+
+/// Picks the model, as at the start, and goes on.
+fn attempt<const D: usize>(
+    job: &Job,
+    state: &[u8],
+    signals: &Signals,
+    skipped: &str,
+    name: &str,
+) -> Result<Attempt, ProgramError> {
+    let scenario = &job.scenario;
+    let beforehand = || prepare(job, skipped, name);
+    match scenario.gravity {
+        Gravity::None => {
+            let model = |boundary| scenario.floating_model::<D>(boundary);
+            go_on(job, state, model, signals, beforehand)
+        }
+        Gravity::Down(_) | Gravity::Along(_) => {
+            let model = |boundary| scenario.gravity_model::<D>(boundary);
+            go_on(job, state, model, signals, beforehand)
+        }
+    }
+}
+
+/// A good checkpoint has been found: says so if it is not the newest, and takes
+/// away what is out of date.
+fn prepare(job: &Job, skipped: &str, name: &str) -> Result<(), ProgramError> {
+    if !skipped.is_empty() {
+        eprintln!("note:{skipped}\n  going on from {name}");
+    }
+    match fs::remove_file(job.folder.file("summary.json")) {
+        Err(error) if error.kind() != io::ErrorKind::NotFound => {
+            return Err(access(&job.folder, "summary.json")(error));
+        }
+        _ => {}
+    }
+    tidy(&job.folder)
+}
+
+fn tidy(folder: &RunFolder) -> Result<(), ProgramError> {
+    folder
+        .tidy()
+        .map_err(ProgramError::io(folder.path().display().to_string()))
+}
+
+fn access(folder: &RunFolder, name: &str) -> impl FnOnce(io::Error) -> ProgramError + use<> {
+    ProgramError::io(folder.file(name).display().to_string())
+}
+
+/// Why a run came to its end, if it did of its own.
+fn finished(folder: &RunFolder) -> Option<&'static str> {
+    let text = fs::read_to_string(folder.file("summary.json")).ok()?;
+    let summary: Summary = serde_json::from_str(&text).ok()?;
+    match summary.stop_reason {
+        StoppedBy::AllFrozen => Some("all grains are at rest"),
+        StoppedBy::Time => Some("the time is up"),
+        StoppedBy::Events => Some("the number of events is reached, or none is left"),
+        StoppedBy::Collapse | StoppedBy::Interrupted | StoppedBy::Error => None,
+    }
+}
