@@ -102,6 +102,10 @@ mod book {
     struct GettingStarted;
     #[doc = include_str!("../book/src/model.md")]
     struct TheModel;
+    #[doc = include_str!("../book/src/prediction.md")]
+    struct Prediction;
+    #[doc = include_str!("../book/src/refusals.md")]
+    struct Refusals;
     #[doc = include_str!("../book/src/notation.md")]
     struct Notation;
     #[cfg(feature = "program")]

@@ -203,13 +203,19 @@ impl<const D: usize> Neighbours<D> {
             tie.anchor[axis] -= f64::from(turns) * self.periods[axis];
             std::mem::take(&mut tie.list)
         };
-        for other in &mut list {
-            let entry = other.seen_from(particle);
-            let theirs = &mut self.ties[other.particle as usize].list;
-            if let Some(place) = theirs.iter().position(|found| *found == entry) {
-                theirs[place].turns[axis] += turns;
+        for place in 0..list.len() {
+            let other = list[place].particle;
+            list[place].turns[axis] -= turns;
+            // In a narrow box several images of one grain are on the list: theirs
+            // are turned all at once, or one might be taken for another that has
+            // been turned already.
+            if list[..place].iter().any(|found| found.particle == other) {
+                continue;
             }
-            other.turns[axis] -= turns;
+            let theirs = &mut self.ties[other as usize].list;
+            for found in theirs.iter_mut().filter(|found| found.particle == particle) {
+                found.turns[axis] += turns;
+            }
         }
         self.ties[particle as usize].list = list;
     }

@@ -101,7 +101,7 @@ impl<const D: usize> Base<D> {
         let (_, mut slab) = best.ok_or(SetupError::NoRoom {
             placed: 0,
             wanted: packing.len(),
-            reason: "no centre of a grain lies in so thin a base",
+            reason: "no centre of a grain lies in so thin a base; give it more thickness",
         })?;
         let lowest = lowest_surface(&slab).unwrap_or(0.0);
         for grain in &mut slab {
