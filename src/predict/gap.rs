@@ -139,8 +139,8 @@ impl<N: Real> GapPolynomial<N> {
         };
         let (first, second) = (&approach.first, &approach.second);
         let mut offset: [N; D] = difference(&second.position(0.0), &first.position(0.0));
-        for axis in 0..D {
-            offset[axis] = offset[axis] + N::from_f64(approach.shift[axis]);
+        for (along, &shift) in offset.iter_mut().zip(approach.shift.iter()) {
+            *along = *along + N::from_f64(shift);
         }
         let acceleration = if F::ACCELERATES {
             difference(&second.acceleration(), &first.acceleration())
