@@ -312,3 +312,37 @@ fn trusted_step<N: Real>(
     };
     (first_root(value, slope, bound), trust, bound)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// At the top of an arch that rises from zero to zero, rounding may put f
+    /// below: a minorant through such a value has no root at all.
+    #[test]
+    fn a_search_from_the_top_of_an_arch_finds_the_fall() {
+        let mut below = 0;
+        for step in 1..400 {
+            let top = 0.1 * f64::from(step);
+            // a (t − top)⁴ − (t − top)².
+            let a = 1.0e-3 / (top * top);
+            let gap = GapPolynomial {
+                coefficients: [
+                    a * top * top * top * top - top * top,
+                    2.0 * top - 4.0 * a * top * top * top,
+                    6.0 * a * top * top - 1.0,
+                    -4.0 * a * top,
+                    a,
+                ],
+                place_scale: top * top,
+                motion_scale: 1.0,
+            };
+            below += usize::from(gap.value(top) < 0.0 && gap.slope(top) >= 0.0);
+            let Descent::At(time) = by_minorants(&gap, top, f64::INFINITY) else {
+                panic!("no fall from {top}");
+            };
+            assert!((time - top).abs() < 1.0e-6 * top, "{time} for {top}");
+        }
+        assert!(below > 20, "rounding has put only {below} of them below");
+    }
+}
