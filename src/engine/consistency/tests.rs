@@ -83,7 +83,8 @@ fn faults_of_the_queue_are_seen() {
     let mut never = soonest;
     never.time = Time::NEVER;
     heap.queue.tamper(first, never);
-    seen(&heap, "without an entry");
+    let fault = heap.queue.check_entry(first).unwrap_err();
+    assert!(fault.contains("without an entry"), "{fault}");
 }
 
 #[test]
