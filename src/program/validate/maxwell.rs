@@ -22,8 +22,9 @@ static CHI_SQUARE: Source = Source {
 
 pub(super) fn checks(effort: Effort) -> Result<Vec<Check>, SetupError> {
     let count = effort.pick(250, 1000, 4000);
-    let seeds = effort.pick(2, 3, 5);
-    let samples = effort.pick(40, 100, 200);
+    // Of two or three seeds no standard error can be told.
+    let seeds = effort.pick(12, 12, 5);
+    let samples = effort.pick(8, 25, 200);
     let mut kurtoses = Vec::new();
     let mut bins = [0u64; BINS];
     for seed in 1..=seeds {
