@@ -377,6 +377,9 @@ fn what_is_not_there_is_told_apart() {
     assert!(message(&output).contains("cannot read mine.toml"));
     let output = grainfall(place.path(), &["draw", "nothing"]);
     assert_eq!(output.status.code(), Some(1));
+    let output = grainfall(place.path(), &["draw", "nothing", "--time", "nan"]);
+    assert_eq!(output.status.code(), Some(2));
+    assert!(message(&output).contains("finite"));
     let output = grainfall(place.path(), &["fly"]);
     assert_eq!(output.status.code(), Some(2));
 }
@@ -446,6 +449,11 @@ fn subjects_of_validation_are_told_apart() {
         text.contains("`bouncing`") && text.contains("bounces"),
         "{text}"
     );
+
+    let unwritable = ["validate", "bounces", "--out", "nowhere/found.json"];
+    let refused = grainfall(folder.path(), &unwritable);
+    assert_eq!(refused.status.code(), Some(1));
+    assert!(refused.stdout.is_empty(), "it began all the same");
 
     let done = grainfall(
         folder.path(),

@@ -282,6 +282,10 @@ fn what_is_no_run_is_refused() {
     assert!(said.contains("no scenario.toml"), "{said}");
     let said = expect(place.path(), 2, &["run", "bounce", "--checkpoint-every=-1"]);
     assert!(said.contains("1e-9"), "{said}");
+    for wrong in ["--audit=0", "--audit=1e4", "--audit=-3"] {
+        let said = expect(place.path(), 2, &["run", "bounce", wrong]);
+        assert!(said.contains("a whole number from 1 on"), "{said}");
+    }
     fs::write(place.path().join("scenario.toml"), "dimension = 2\n").unwrap();
     let said = expect(place.path(), 2, &["resume", "."]);
     assert!(
@@ -306,6 +310,41 @@ fn a_collapse_is_kept() {
         if !name.starts_with("checkpoint") {
             assert!(after[&name] == bytes, "{name}");
         }
+    }
+}
+
+/// What an audit said of another part of the run is not left beside the rest.
+#[test]
+fn audits_of_an_earlier_part_are_taken_away() {
+    let place = place();
+    let audit = place.path().join("runs/bounce-full-1/audit.json");
+    expect(place.path(), 3, &["run", "bounce-full", "--audit", "10"]);
+    assert!(audit.exists());
+    expect(place.path(), 3, &["resume", "runs/bounce-full-1"]);
+    assert!(!audit.exists());
+}
+
+/// Of two runs that are begun in one folder at the same moment one is refused.
+#[test]
+fn a_folder_belongs_to_one_run() {
+    for _ in 0..5 {
+        let place = place();
+        let runs = ["1", "2"].map(|seed| {
+            let arguments = ["run", "bounce", "--seed", seed, "--out", "both"];
+            command(place.path(), &arguments).spawn().unwrap()
+        });
+        let codes = runs.map(|mut run| run.wait().unwrap().code().unwrap());
+        let winner = match codes {
+            [0, 2] => 1,
+            [2, 0] => 2,
+            _ => panic!("{codes:?}"),
+        };
+        let run = place.path().join("both");
+        let scenario = fs::read_to_string(run.join("scenario.toml")).unwrap();
+        assert!(scenario.contains(&format!("seed = {winner}\n")));
+        let text = fs::read_to_string(run.join("summary.json")).unwrap();
+        let summary: Value = serde_json::from_str(&text).unwrap();
+        assert_eq!(summary["seed"], winner);
     }
 }
 

@@ -454,6 +454,15 @@ fn a_frame_starts_another_run() {
         summary(&place.path().join("again"))["trajectory_hash"],
         one["trajectory_hash"]
     );
+    // Or one that is taken away.
+    let scenario = scenario.replace("runs/arch-1", "again");
+    fs::write(place.path().join("more.toml"), scenario).unwrap();
+    let arguments = ["run", "more.toml", "--out", "again", "--force"];
+    expect(place.path(), 0, &arguments);
+    assert_eq!(
+        summary(&place.path().join("again"))["stop_reason"],
+        "all_frozen"
+    );
 }
 
 #[test]

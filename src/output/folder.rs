@@ -1,6 +1,7 @@
 use std::fs::{self, File, OpenOptions, TryLockError};
 use std::io::{self, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 /// True for the names of files that a run, or a picture of it, leaves behind.
 fn is_of_a_run(name: &str) -> bool {
@@ -69,6 +70,12 @@ pub enum FolderError {
         /// The length it had.
         wanted: u64,
     },
+    /// A file of the run is gone.
+    #[error("{file} is not there")]
+    Gone {
+        /// Which.
+        file: String,
+    },
     /// A file or the folder can't be written.
     #[error("cannot write {file}: {source}")]
     Io {
@@ -85,6 +92,8 @@ pub struct RunFolder {
     path: PathBuf,
     /// Folders that were made for it, the outermost first.
     made: Vec<PathBuf>,
+    /// Held as long as the run goes on, if it was begun here.
+    _lock: Option<Arc<File>>,
 }
 
 impl RunFolder {
@@ -119,7 +128,7 @@ impl RunFolder {
     }
 
     /// Makes the folder, and takes the files of an earlier run out of it; other
-    /// files stay.
+    /// files stay. It is [locked](RunFolder::lock) as long as this is there.
     ///
     /// # Errors
     ///
@@ -130,20 +139,20 @@ impl RunFolder {
         let missing = path.ancestors().take_while(|folder| !folder.exists());
         let mut made: Vec<_> = missing.map(Path::to_path_buf).collect();
         made.reverse();
-        let folder = RunFolder {
+        let mut folder = RunFolder {
             path: path.to_path_buf(),
             made,
+            _lock: None,
         };
         let failed = |file: &Path, source| FolderError::Io {
             file: file.display().to_string(),
             source,
         };
-        // A run that goes on there is not to have its files taken away.
-        let _in_use = match folder.file("scenario.toml").is_file() {
-            true => Some(folder.lock()?),
-            false => None,
-        };
         fs::create_dir_all(path).map_err(|error| failed(path, error))?;
+        // A run that goes on there is not to have its files taken away, nor is
+        // one that another process has begun just now.
+        folder._lock = Some(Arc::new(folder.lock()?));
+        RunFolder::check(path, force)?;
         for name in names_in(path).map_err(|error| failed(path, error))? {
             let file = folder.file(&name);
             if is_of_a_run(&name) {
@@ -174,6 +183,7 @@ impl RunFolder {
         Ok(RunFolder {
             path: path.to_path_buf(),
             made: Vec::new(),
+            _lock: None,
         })
     }
 
@@ -184,9 +194,10 @@ impl RunFolder {
     ///
     /// When another process is at it already.
     pub fn lock(&self) -> Result<File, FolderError> {
-        let file = self.file("scenario.toml");
-        let opened = File::open(&file).map_err(|source| FolderError::Io {
-            file: file.display().to_string(),
+        // Where a folder can't be opened, a file that is never replaced will do.
+        let opened = File::open(&self.path).or_else(|_| File::open(self.file("scenario.toml")));
+        let opened = opened.map_err(|source| FolderError::Io {
+            file: self.path.display().to_string(),
             source,
         })?;
         match opened.try_lock() {
@@ -286,6 +297,9 @@ impl RunFolder {
                 found: about.len(),
                 wanted,
             }),
+            Err(error) if error.kind() == io::ErrorKind::NotFound => {
+                Err(FolderError::Gone { file: shown })
+            }
             Err(source) => Err(FolderError::Io {
                 file: shown,
                 source,

@@ -71,6 +71,22 @@ fn interval(text: &str) -> Result<f64, String> {
     }
 }
 
+/// A number of events between audits.
+fn events(text: &str) -> Result<u64, String> {
+    match text.parse::<u64>() {
+        Ok(every) if every > 0 => Ok(every),
+        _ => Err("a whole number from 1 on is allowed, such as 10000".to_owned()),
+    }
+}
+
+/// A time that comes.
+fn instant(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(time) if time.is_finite() => Ok(time),
+        _ => Err("a finite number is allowed".to_owned()),
+    }
+}
+
 const SET_HELP: &str = "\
 A value in place of the scenario's, such as parameters.sleep_speed=0.05,
 grains.1.rain.count=1500 or gravity=none; again and again";
@@ -127,7 +143,7 @@ pub(super) struct RunArguments {
     pub(super) until: Option<f64>,
     #[arg(long, value_name = "T", value_parser = interval, allow_negative_numbers = true, help = CHECKPOINT_HELP)]
     pub(super) checkpoint_every: Option<f64>,
-    #[arg(long, value_name = "K", value_parser = clap::value_parser!(u64).range(1..), help = AUDIT_HELP)]
+    #[arg(long, value_name = "K", value_parser = events, allow_negative_numbers = true, help = AUDIT_HELP)]
     pub(super) audit: Option<u64>,
     /// Overwrite an earlier run
     #[arg(long)]
@@ -145,7 +161,7 @@ pub(super) struct ResumeArguments {
     pub(super) folder: PathBuf,
     #[arg(long, value_name = "T", value_parser = interval, allow_negative_numbers = true, help = CHECKPOINT_HELP)]
     pub(super) checkpoint_every: Option<f64>,
-    #[arg(long, value_name = "K", value_parser = clap::value_parser!(u64).range(1..), help = AUDIT_HELP)]
+    #[arg(long, value_name = "K", value_parser = events, allow_negative_numbers = true, help = AUDIT_HELP)]
     pub(super) audit: Option<u64>,
     /// Show no progress, and no summary at the end
     #[arg(long, short)]
@@ -173,7 +189,7 @@ pub(super) struct DrawArguments {
     /// A run folder, or an extended XYZ file
     pub(super) run: PathBuf,
     /// The frame nearest to this time [default: the last]
-    #[arg(long, value_name = "T")]
+    #[arg(long, value_name = "T", value_parser = instant, allow_negative_numbers = true)]
     pub(super) time: Option<f64>,
     /// Where to write [default: picture.svg beside the frames]
     #[arg(long, value_name = "FILE.svg")]

@@ -114,11 +114,13 @@ fn prepare(job: &Job, skipped: &str, name: &str) -> Result<(), ProgramError> {
     if !skipped.is_empty() {
         eprintln!("note:{skipped}\n  going on from {name}");
     }
-    match fs::remove_file(job.folder.file("summary.json")) {
-        Err(error) if error.kind() != io::ErrorKind::NotFound => {
-            return Err(access(&job.folder, "summary.json")(error));
+    for name in ["summary.json", "audit.json"] {
+        match fs::remove_file(job.folder.file(name)) {
+            Err(error) if error.kind() != io::ErrorKind::NotFound => {
+                return Err(access(&job.folder, name)(error));
+            }
+            _ => {}
         }
-        _ => {}
     }
     tidy(&job.folder)
 }

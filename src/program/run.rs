@@ -35,14 +35,17 @@ fn begin<const D: usize>(
     folder: &FilePath,
 ) -> Result<u8, ProgramError> {
     let Loaded {
-        origin, scenario, ..
+        mut origin,
+        scenario,
+        ..
     } = loaded;
     let given = check_grains::<D>(&origin, &scenario)?;
     let signals = Signals::listen().map_err(ProgramError::io("signals"))?;
     let folder = RunFolder::create(folder, arguments.force)?;
-    let text = drive::begin(&folder, &scenario, given.files())?;
+    let (text, scenario) = drive::begin(&folder, &scenario, given.files())?;
     drop(given);
-    let _lock = folder.lock()?;
+    // What it names may have stood in the run that has just been overwritten.
+    origin.folder = folder.path().to_path_buf();
     let job = Job {
         origin,
         scenario,
@@ -86,7 +89,7 @@ fn assignments(arguments: &RunArguments) -> Vec<Assignment> {
     }
     if let Some(until) = arguments.until {
         let path = Path::root().key("stop").key("time");
-        let text = format!("--until {until}");
+        let text = format!("--until {until:?}");
         all.push(Assignment::new(path, Value::Float(until), text));
     }
     all

@@ -11,7 +11,7 @@ mod maxwell;
 mod pressure;
 mod table;
 
-use std::fs;
+use std::fs::{self, OpenOptions};
 use std::path::Path;
 
 use serde::Serialize;
@@ -92,8 +92,14 @@ pub(super) fn validate(arguments: &ValidateArguments) -> Result<u8, ProgramError
     } else {
         Effort::Full
     };
+    let subjects = chosen(&arguments.subjects)?;
+    if let Some(file) = &arguments.out {
+        // Before hours are spent on what can't be written.
+        let opened = OpenOptions::new().create(true).append(true).open(file);
+        opened.map_err(ProgramError::io(file.display().to_string()))?;
+    }
     let mut outcomes = Vec::new();
-    for subject in chosen(&arguments.subjects)? {
+    for subject in subjects {
         let clock = ProcessorClock::start();
         let checks = (subject.checks)(effort)?;
         let outcome = Outcome {

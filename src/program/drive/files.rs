@@ -43,12 +43,13 @@ pub(super) struct SavedFiles {
 
 /// Writes what says what is run: the files that the scenario names, a
 /// checkpoint that says that nothing has been set up, and `scenario.toml`. The
-/// last comes last: where it is, a run can be resumed.
+/// last comes last: where it is, a run can be resumed. Returns its text, and the
+/// scenario with those files in the place of the ones that were named.
 pub(in crate::program) fn begin(
     folder: &RunFolder,
     scenario: &Scenario,
     inputs: &[(usize, Frame)],
-) -> Result<Vec<u8>, ProgramError> {
+) -> Result<(Vec<u8>, Scenario), ProgramError> {
     let mut resolved = scenario.clone();
     for (index, frame) in inputs {
         let name = format!("input-{index}.xyz");
@@ -68,7 +69,7 @@ pub(in crate::program) fn begin(
     let text = (head + &text).into_bytes();
     write_checkpoint(folder, &Checkpoint::new(&text, nothing_yet()))?;
     folder.write("scenario.toml", &text)?;
-    Ok(text)
+    Ok((text, resolved))
 }
 
 pub(super) fn write_checkpoint(

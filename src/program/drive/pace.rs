@@ -95,7 +95,8 @@ impl Beat {
         }
         self.count = (now.units() / self.every).floor().max(self.count);
         while self.next() <= now {
-            self.count += 1.0;
+            // From 2⁵³ on, adding one changes nothing.
+            self.count = (self.count + 1.0).max(self.count.next_up());
         }
         true
     }
@@ -131,8 +132,8 @@ impl Samples {
 
     /// Samples that have got as far; `None` if nothing can have.
     pub(super) fn restore(rows: f64, frames: f64, saved: &SavedSamples) -> Option<Self> {
-        // Up to here counting on finds the next whole number.
-        let is_count = |count: f64| (1.0..1.0e15).contains(&count);
+        // The shortest interval fits so often into the longest run.
+        let is_count = |count: f64| (1.0..1.0e19).contains(&count);
         (is_count(saved.rows) && is_count(saved.frames)).then_some(Samples {
             rows: Beat {
                 every: rows,
@@ -276,6 +277,9 @@ mod tests {
         assert!(!cadence.is_due(Time::from_units(3.4)));
         assert!(cadence.is_due(Time::from_units(3.5)));
         assert_eq!(cadence.next(), Time::from_units(4.0));
+        let late = Time::from_units(7.9e9);
+        let short = Cadence::new(Some(1.0e-9), late);
+        assert!(short.next() > late);
         let mut never = Cadence::new(Some(0.0), Time::ZERO);
         assert!(!never.is_due(Time::from_units(1.0e9)));
         assert_eq!(never.next(), Time::NEVER);
