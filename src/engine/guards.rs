@@ -18,6 +18,9 @@ const INSTANT: f64 = 1.0e-12;
 /// make 10¹¹ of them in a unit of time.
 const HURRY: f64 = 0.01;
 
+/// The same, in √(d/g), where there is no exit speed.
+const MOMENT: f64 = 1.0e-7;
+
 /// Less than this, in d, does not separate two surfaces.
 const HAIR: f64 = 1.0e-12;
 
@@ -73,7 +76,12 @@ impl Traces {
             traces: Vec::new(),
             holds: Vec::new(),
             hold: guards.hold,
-            moment: HURRY * guards.exit_speed,
+            // The detector of collapse needs it if there is no projection, too.
+            moment: if guards.exit_speed > 0.0 {
+                HURRY * guards.exit_speed
+            } else {
+                MOMENT
+            },
         }
     }
 

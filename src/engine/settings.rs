@@ -14,10 +14,10 @@ use crate::time::Time;
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Guards {
     /// After this many collisions of one grain at one instant (closer together
-    /// than 10⁻¹² √(d/g), or than a hundredth of `exit_speed` over g if the
-    /// surfaces part by less than 10⁻¹² d in between), and each time as many
-    /// more, the velocities of all
-    /// normal grains that touch it, directly or through each other, are
+    /// than 10⁻¹² √(d/g), or than a hundredth of `exit_speed` over g, or 10⁻⁷ if
+    /// that is 0, if the surfaces part by less than 10⁻¹² d in between), and each
+    /// time as many more, the velocities of all normal grains that touch it,
+    /// directly or through each other, are
     /// projected on the cone of those with which no contact closes: the limit
     /// of the cascade. A grain that no velocity would free falls asleep.
     /// `None` switches it off.
