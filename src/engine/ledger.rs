@@ -50,11 +50,9 @@ pub struct EnergyLedger {
 }
 
 impl EnergyLedger {
-    /// All entries together.
-    #[must_use]
-    pub fn sum(&self) -> f64 {
-        let mut sum = Sum::default();
-        for entry in [
+    /// The entries that make up the sum.
+    fn entries(&self) -> [f64; 12] {
+        [
             self.pair,
             self.frozen,
             self.wake,
@@ -67,7 +65,14 @@ impl EnergyLedger {
             self.growth,
             self.crossing,
             self.inserted,
-        ] {
+        ]
+    }
+
+    /// All entries together.
+    #[must_use]
+    pub fn sum(&self) -> f64 {
+        let mut sum = Sum::default();
+        for entry in self.entries() {
             sum.add(entry);
         }
         sum.value()
@@ -83,23 +88,8 @@ impl EnergyLedger {
     /// energies at both ends: rounding leaves some 10⁻¹².
     #[must_use]
     pub fn relative_error(&self) -> f64 {
-        let sizes = [
-            self.pair,
-            self.frozen,
-            self.wake,
-            self.wall,
-            self.sleep,
-            self.given_back,
-            self.fall,
-            self.guard,
-            self.moving,
-            self.growth,
-            self.crossing,
-            self.inserted,
-            self.at_start,
-            self.now,
-        ];
-        let size: f64 = sizes.iter().map(|entry| entry.abs()).sum();
+        let parts = self.entries().into_iter().chain([self.at_start, self.now]);
+        let size: f64 = parts.map(f64::abs).sum();
         if size == 0.0 {
             return 0.0;
         }
