@@ -28,7 +28,7 @@ pub use policy::{
     Commands, NoEvent, Place, Reason, Response, SleepDecision, StatePolicy, WakeCause,
     WakeDecision, Waking,
 };
-pub use predictor::{Approach, Encounter, Forecast, Predictor};
+pub use predictor::{Approach, Crowd, Encounter, Forecast, LANES, Nook, Predictor, Resting};
 pub use surroundings::{NearWall, Neighbour, Surroundings};
 
 /// One of each of the five parts: what a simulation is made of.

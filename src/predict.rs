@@ -28,6 +28,7 @@ mod lead;
 mod real;
 mod refine;
 mod scale;
+mod screen;
 mod wall;
 
 pub use descent::{Descent, cubic_descent, quadratic_descent, quartic_descent};
@@ -35,7 +36,9 @@ pub use double_double::DoubleDouble;
 pub use gap::{CERTAIN, GapPolynomial, Relative};
 pub use real::Real;
 
-use crate::model::{Approach, Encounter, Forecast, PolynomialFlight, Predictor, Shape, Wall};
+use crate::model::{
+    Approach, Crowd, Encounter, Forecast, LANES, Nook, PolynomialFlight, Predictor, Shape, Wall,
+};
 use crate::particle::Vector;
 use lead::Lead;
 
@@ -77,6 +80,16 @@ impl<const D: usize, F: PolynomialFlight<D>> Predictor<D, F> for Polynomial {
     #[inline]
     fn pair(&self, approach: &Approach<D, F>) -> Forecast {
         pair(approach).0
+    }
+
+    #[inline]
+    fn not_before(&self, own: &F, other: impl Fn(usize) -> F, crowd: &Crowd<D>) -> [f64; LANES] {
+        screen::not_before(own, other, crowd)
+    }
+
+    #[inline]
+    fn not_before_resting(&self, nook: &Nook<'_, D, F>) -> [f64; LANES] {
+        screen::not_before_resting(nook)
     }
 
     #[inline]

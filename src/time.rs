@@ -100,6 +100,7 @@ impl Time {
 
     /// False for [`Time::NEVER`] alone.
     #[must_use]
+    #[inline]
     pub fn is_finite(self) -> bool {
         self != Time::NEVER
     }
@@ -110,14 +111,23 @@ impl Time {
         [self.ticks as u64, self.rest.to_bits()]
     }
 
+    /// `self - earlier` for two instants that come, and are less than 2⁶³ ticks
+    /// apart.
+    #[inline]
+    pub(crate) fn since(self, earlier: Time) -> f64 {
+        self.ticks.wrapping_sub(earlier.ticks) as f64 * TICK + (self.rest - earlier.rest)
+    }
+
     /// The earlier of two instants.
     #[must_use]
+    #[inline]
     pub fn min(self, other: Time) -> Time {
         if other < self { other } else { self }
     }
 
     /// The later of two instants.
     #[must_use]
+    #[inline]
     pub fn max(self, other: Time) -> Time {
         if other > self { other } else { self }
     }
@@ -194,9 +204,9 @@ impl Eq for Time {}
 impl Ord for Time {
     #[inline]
     fn cmp(&self, other: &Self) -> Ordering {
-        self.ticks
-            .cmp(&other.ticks)
-            .then(self.rest.total_cmp(&other.rest))
+        // Rests are not negative: their bits are in their order.
+        let (rest, other_rest) = (self.rest.to_bits(), other.rest.to_bits());
+        (self.ticks, rest).cmp(&(other.ticks, other_rest))
     }
 }
 
@@ -204,6 +214,26 @@ impl PartialOrd for Time {
     #[inline]
     fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
         Some(self.cmp(other))
+    }
+
+    #[inline]
+    fn lt(&self, other: &Self) -> bool {
+        self.ticks < other.ticks || (self.ticks == other.ticks && self.rest < other.rest)
+    }
+
+    #[inline]
+    fn le(&self, other: &Self) -> bool {
+        !(other < self)
+    }
+
+    #[inline]
+    fn gt(&self, other: &Self) -> bool {
+        other < self
+    }
+
+    #[inline]
+    fn ge(&self, other: &Self) -> bool {
+        !(self < other)
     }
 }
 

@@ -22,6 +22,16 @@ impl<const D: usize> Flight<D> for Straight<D> {
     }
 
     #[inline]
+    fn start(&self) -> Vector<D> {
+        self.position
+    }
+
+    #[inline]
+    fn start_velocity(&self) -> Vector<D> {
+        self.velocity
+    }
+
+    #[inline]
     fn advanced(&self, after: f64) -> Self {
         Straight {
             position: self.position(after),
@@ -69,6 +79,16 @@ impl<const D: usize> Flight<D> for Parabola<D> {
     #[inline]
     fn velocity(&self, after: f64) -> Vector<D> {
         self.velocity + self.acceleration * after
+    }
+
+    #[inline]
+    fn start(&self) -> Vector<D> {
+        self.position
+    }
+
+    #[inline]
+    fn start_velocity(&self) -> Vector<D> {
+        self.velocity
     }
 
     #[inline]

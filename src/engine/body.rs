@@ -39,9 +39,27 @@ pub(super) struct World<const D: usize> {
     /// Largest diameter at t = 0, in d.
     pub(super) largest: f64,
     pub(super) ledger: Ledger,
+    /// How far off, in d, the computed position of any grain may be whose last
+    /// event is not [`LONG_AGO`].
+    pub(super) blur: f64,
 }
 
+/// Positions of grains whose last event is longer ago than this, in √(d/g), may
+/// be off by more than [`World::blur`].
+pub(super) const LONG_AGO: f64 = 16.0;
+
+/// Rounding of a position, over all lengths that it is made of: 64 u.
+const ROUND: f64 = 32.0 * f64::EPSILON;
+
 impl<const D: usize> World<D> {
+    /// Keeps the bound on rounding true for a grain whose state is new.
+    #[inline]
+    pub(super) fn keep_blur<M: Model<D>>(&mut self, model: &M, particle: u32) {
+        let flight = self.flight(model, particle);
+        let span = flight.start().amax() + flight.speed_bound(LONG_AGO) * LONG_AGO;
+        self.blur = self.blur.max(ROUND * span);
+    }
+
     /// The flight of a grain from its last event on.
     #[inline]
     pub(super) fn flight<M: Model<D>>(&self, model: &M, particle: u32) -> FlightOf<M, D> {
@@ -102,6 +120,8 @@ impl<const D: usize> World<D> {
             body.mode = mode;
         }
         body.still = mode.is_static() && flight_of(model, particle, body).is_at_rest();
+        self.keep_blur(model, particle);
+        let body = &mut self.bodies[particle as usize];
         for axis in 0..D {
             let Some(period) = model.boundary().period(axis) else {
                 continue;

@@ -1,5 +1,6 @@
 //! The cascade guard and the collapse detector.
 
+use crate::engine::cells::Found;
 use crate::engine::ledger::Entry;
 use crate::engine::projection::{Member, Touch, project};
 use crate::engine::settings::Collapse;
@@ -291,18 +292,22 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
         let largest = self.world.largest * self.scale_at(self.world.clock);
         let farthest = one.radius() + 0.5 * largest + tolerance;
         let mut touched = Vec::new();
-        self.world
-            .near
-            .for_each_within(particle, farthest, |found| {
-                let Some((other, offset)) = self.world.nearest(&self.model, &one, &found) else {
-                    return;
-                };
-                let apart = -offset;
-                let contact = 0.5 * (one.diameter + other.diameter);
-                if apart.norm_squared() - contact * contact < tolerance {
-                    touched.push((found.particle, apart.normalize(), other));
-                }
-            });
+        let mut look = |found: &Found<D>| {
+            let Some((other, offset)) = self.world.nearest(&self.model, &one, found) else {
+                return;
+            };
+            let apart = -offset;
+            let contact = 0.5 * (one.diameter + other.diameter);
+            if apart.norm_squared() - contact * contact < tolerance {
+                touched.push((found.particle, apart.normalize(), other));
+            }
+        };
+        let near = &self.world.near;
+        if near.slack(particle, &one.position) > tolerance {
+            near.list(particle).iter().for_each(look);
+        } else {
+            near.for_each_within(particle, farthest, |found| look(&found));
+        }
         // By id, so that the outcome does not depend on the grid.
         touched.sort_by_key(|touch| touch.0);
         for (id, normal, other) in &touched {

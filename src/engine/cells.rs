@@ -31,7 +31,11 @@ struct Axis {
 
 /// A grain's place in the grid and in its cell's list.
 #[derive(Clone, Copy, Debug)]
-struct Seat<const D: usize> {
+pub(super) struct Seat<const D: usize> {
+    /// The place it is filed under, in d.
+    pub(super) anchor: Vector<D>,
+    /// How far from there its surface may be, in d.
+    pub(super) reach: f64,
     cell: [i32; D],
     next: u32,
     previous: u32,
@@ -106,6 +110,12 @@ impl<const D: usize> Cells<D> {
         cells
     }
 
+    /// Where a grain is filed.
+    #[inline]
+    pub(super) fn seat(&self, particle: u32) -> &Seat<D> {
+        &self.seats[particle as usize]
+    }
+
     /// How many of the grains at these positions there are, on average, in a
     /// cube of this edge.
     pub(super) fn crowding<B: Boundary<D>>(
@@ -118,11 +128,20 @@ impl<const D: usize> Cells<D> {
         positions.len() as f64 / cubes
     }
 
+    /// Says where a grain is filed that has been seated.
+    pub(super) fn seat_at(&mut self, particle: u32, anchor: &Vector<D>, reach: f64) {
+        let seat = &mut self.seats[particle as usize];
+        seat.anchor = *anchor;
+        seat.reach = reach;
+    }
+
     /// Seats one more grain.
     pub(super) fn add(&mut self, position: &Vector<D>) {
         let cell = self.cell_of(position);
         let particle = self.seats.len() as u32;
         self.seats.push(Seat {
+            anchor: *position,
+            reach: 0.0,
             cell,
             next: NONE,
             previous: NONE,
@@ -179,8 +198,11 @@ impl<const D: usize> Cells<D> {
     }
 
     /// Files a grain under the cell of another position.
-    pub(super) fn refile(&mut self, particle: u32, position: &Vector<D>) {
+    pub(super) fn refile(&mut self, particle: u32, position: &Vector<D>, reach: f64) {
         let cell = self.cell_of(position);
+        let seat = &mut self.seats[particle as usize];
+        seat.anchor = *position;
+        seat.reach = reach;
         if cell != self.seats[particle as usize].cell {
             self.unlink(particle);
             self.seats[particle as usize].cell = cell;
@@ -191,31 +213,29 @@ impl<const D: usize> Cells<D> {
     /// Tells the grid that `turns` periods have been taken off a grain's
     /// position.
     pub(super) fn unwind(&mut self, particle: u32, axis: usize, turns: i32) {
-        self.seats[particle as usize].cell[axis] -= turns * self.axes[axis].count;
+        let Axis { count, period, .. } = self.axes[axis];
+        let seat = &mut self.seats[particle as usize];
+        seat.cell[axis] -= turns * count;
+        seat.anchor[axis] -= f64::from(turns) * period.map_or(0.0, |period| period.length);
     }
 
     /// Calls `visit` for every grain within `rings` cells of `particle`'s own,
     /// itself left out.
-    #[inline]
-    pub(super) fn for_each_near(&self, particle: u32, rings: i32, visit: impl FnMut(Found<D>)) {
-        let centre = self.seats[particle as usize].cell;
-        self.for_each_in(
-            particle,
-            centre.map(|c| c - rings),
-            centre.map(|c| c + rings),
-            visit,
-        );
+    pub(super) fn for_each_near(&self, particle: u32, rings: i32, mut visit: impl FnMut(Found<D>)) {
+        self.for_each_seat(particle, rings, |found, _| visit(found));
     }
 
+    /// The same, with where they are filed.
     #[inline]
-    fn for_each_in(
+    pub(super) fn for_each_seat(
         &self,
         particle: u32,
-        low: [i32; D],
-        high: [i32; D],
-        mut visit: impl FnMut(Found<D>),
+        rings: i32,
+        mut visit: impl FnMut(Found<D>, &Seat<D>),
     ) {
-        let (mut low, mut high) = (low, high);
+        let centre = self.seats[particle as usize].cell;
+        let mut low = centre.map(|c| c - rings);
+        let mut high = centre.map(|c| c + rings);
         for axis in 0..D {
             if self.axes[axis].period.is_none() {
                 low[axis] = low[axis].max(0);
@@ -227,38 +247,47 @@ impl<const D: usize> Cells<D> {
         }
         let mut at = low;
         loop {
-            let index = self.index(&at);
-            let mut other = self.heads[index];
-            while other != NONE {
-                let seat = &self.seats[other as usize];
-                if other != particle {
-                    let mut turns = [0; D];
-                    if seat.cell != at {
-                        for axis in 0..D {
-                            turns[axis] = (at[axis] - seat.cell[axis]) / self.axes[axis].count;
+            let row = self.row(&at);
+            for along in low[0]..=high[0] {
+                at[0] = along;
+                let mut other = self.heads[row + self.wrapped(along, 0)];
+                while other != NONE {
+                    let seat = &self.seats[other as usize];
+                    if other != particle {
+                        let mut turns = [0; D];
+                        if seat.cell != at {
+                            for axis in 0..D {
+                                turns[axis] = (at[axis] - seat.cell[axis]) / self.axes[axis].count;
+                            }
                         }
+                        let found = Found {
+                            particle: other,
+                            turns,
+                        };
+                        visit(found, seat);
                     }
-                    visit(Found {
-                        particle: other,
-                        turns,
-                    });
+                    other = seat.next;
                 }
-                other = seat.next;
             }
-            // The next cell, the first axis running fastest.
-            let mut axis = 0;
-            loop {
-                if at[axis] < high[axis] {
-                    at[axis] += 1;
-                    break;
-                }
+            // The next row, the second axis running fastest.
+            let mut axis = 1;
+            while axis < D && at[axis] == high[axis] {
                 at[axis] = low[axis];
                 axis += 1;
-                if axis == D {
-                    return;
-                }
             }
+            if axis >= D {
+                return;
+            }
+            at[axis] += 1;
         }
+    }
+
+    /// Index of the first cell of a row along the first axis.
+    #[inline]
+    fn row(&self, cell: &[i32; D]) -> usize {
+        (1..D)
+            .map(|axis| self.wrapped(cell[axis], axis) * self.axes[axis].stride)
+            .sum()
     }
 
     #[inline]

@@ -175,6 +175,7 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
             return Err(format!("grain {particle} moves without a list"));
         }
         self.world.near.check_tie(particle, &position)?;
+        self.world.near.check_bed(particle, &self.world.bodies)?;
         let near = View {
             model: &self.model,
             world: &self.world,

@@ -11,9 +11,11 @@
 //! What is listed, and when, decides only how much has to be predicted: it
 //! never changes a trajectory.
 
+mod bed;
 mod check;
 mod saved;
 
+pub(super) use bed::Bed;
 pub(super) use saved::SavedNeighbours;
 
 use crate::engine::cells::{Cells, Found};
@@ -41,14 +43,14 @@ const ESCAPE: f64 = 2.0e6;
 /// Leaves room for rounding.
 const ROUND: f64 = 1.0 - 1.0e-9;
 
-/// A grain's anchor, leash and list.
+/// A grain's leash and list.
 #[derive(Clone, Debug)]
 struct Tie<const D: usize> {
-    anchor: Vector<D>,
     leash: f64,
     /// Whether the long leash suits it.
     lonely: bool,
     list: Vec<Found<D>>,
+    bed: Bed<D>,
 }
 
 /// The grid and the lists.
@@ -73,10 +75,7 @@ impl<const D: usize> Neighbours<D> {
         Neighbours {
             cells: Cells::new(boundary, positions, reach),
             longest: long * largest,
-            ties: positions
-                .iter()
-                .map(|position| Tie::at(*position))
-                .collect(),
+            ties: positions.iter().map(|_| Tie::LOOSE).collect(),
             largest,
             periods: std::array::from_fn(|axis| {
                 boundary.period(axis).map_or(0.0, |period| period.length)
@@ -87,7 +86,14 @@ impl<const D: usize> Neighbours<D> {
     /// Adds a grain at rest at a position.
     pub(super) fn add(&mut self, position: Vector<D>) {
         self.cells.add(&position);
-        self.ties.push(Tie::at(position));
+        self.ties.push(Tie::LOOSE);
+    }
+
+    /// Says how large a grain at rest may become as long as this grid serves, in
+    /// d.
+    pub(super) fn set_radius(&mut self, particle: u32, radius: f64) {
+        let anchor = *self.anchor(particle);
+        self.cells.seat_at(particle, &anchor, radius);
     }
 
     /// Takes back the grain that was added last.
@@ -120,7 +126,7 @@ impl<const D: usize> Neighbours<D> {
     /// far already.
     pub(super) fn slack(&self, particle: u32, position: &Vector<D>) -> f64 {
         let tie = &self.ties[particle as usize];
-        ROUND * tie.leash - (position - tie.anchor).norm()
+        ROUND * tie.leash - (position - self.anchor(particle)).norm()
     }
 
     /// Whether little enough slack is left to make the list anew.
@@ -129,60 +135,62 @@ impl<const D: usize> Neighbours<D> {
     }
 
     /// Ties a moving grain to an anchor a little ahead of it and makes its list
-    /// anew. `radius_of` gives radii now, in d.
+    /// anew. `radius` is its largest as long as this grid serves, in d.
     pub(super) fn tie(
         &mut self,
         particle: u32,
         position: &Vector<D>,
         velocity: &Vector<D>,
-        radius_of: impl Fn(u32) -> f64,
+        radius: f64,
     ) {
         self.untie_partners(particle);
         let speed = velocity.norm();
+        let mut list = std::mem::take(&mut self.ties[particle as usize].list);
         loop {
             let short = SHORT_LEASH * self.largest;
             let tie = &mut self.ties[particle as usize];
             tie.leash = if tie.lonely { self.longest } else { short };
+            let leash = tie.leash;
             // Half a unit of time ahead, but well within the leash.
             let ahead = if speed > 0.0 {
-                f64::min(0.5, 0.75 * tie.leash / speed)
+                f64::min(0.5, 0.75 * leash / speed)
             } else {
                 0.0
             };
-            tie.anchor = position + velocity * ahead;
-            let (anchor, leash) = (tie.anchor, tie.leash);
-            let mut list = std::mem::take(&mut tie.list);
-            self.cells.refile(particle, &anchor);
-            self.gather(particle, &radius_of, &mut list);
+            let anchor = position + velocity * ahead;
+            self.cells.refile(particle, &anchor, radius + leash);
+            self.gather(particle, radius, &mut list);
             let tie = &mut self.ties[particle as usize];
-            tie.list = list;
-            if leash > short && tie.list.len() > MANY {
+            if leash > short && list.len() > MANY {
                 tie.lonely = false;
                 continue;
             }
-            tie.lonely |= tie.list.len() <= FEW;
+            tie.lonely |= list.len() <= FEW;
             break;
         }
-        let list = std::mem::take(&mut self.ties[particle as usize].list);
         for other in &list {
             let tie = &mut self.ties[other.particle as usize];
             if tie.leash > 0.0 {
                 tie.list.push(other.seen_from(particle));
+                tie.bed.mover_changed();
             }
         }
-        self.ties[particle as usize].list = list;
+        let tie = &mut self.ties[particle as usize];
+        tie.list = list;
+        tie.bed.spoil();
     }
 
     /// Forgets the list of a grain that has come to rest; those that move keep
     /// it on theirs, unless it has stopped out of their reach, where it would
     /// not find them again.
-    pub(super) fn release(&mut self, particle: u32, position: &Vector<D>) {
+    pub(super) fn release(&mut self, particle: u32, position: &Vector<D>, radius: f64) {
         let tie = &mut self.ties[particle as usize];
-        tie.anchor = *position;
         tie.leash = 0.0;
+        tie.bed = Bed::EMPTY;
         for other in std::mem::take(&mut tie.list) {
             let theirs = &mut self.ties[other.particle as usize];
-            let mut apart = theirs.anchor - position;
+            theirs.bed.spoil();
+            let mut apart = self.cells.seat(other.particle).anchor - position;
             for (axis, turns) in other.turns.into_iter().enumerate() {
                 apart[axis] += f64::from(turns) * self.periods[axis];
             }
@@ -192,7 +200,7 @@ impl<const D: usize> Neighbours<D> {
                 theirs.list.retain(|found| *found != entry);
             }
         }
-        self.cells.refile(particle, position);
+        self.cells.refile(particle, position, radius);
     }
 
     /// Takes `turns` periods off a grain's position.
@@ -200,7 +208,7 @@ impl<const D: usize> Neighbours<D> {
         self.cells.unwind(particle, axis, turns);
         let mut list = {
             let tie = &mut self.ties[particle as usize];
-            tie.anchor[axis] -= f64::from(turns) * self.periods[axis];
+            tie.bed.spoil();
             std::mem::take(&mut tie.list)
         };
         for place in 0..list.len() {
@@ -212,6 +220,7 @@ impl<const D: usize> Neighbours<D> {
             if list[..place].iter().any(|found| found.particle == other) {
                 continue;
             }
+            self.ties[other as usize].bed.spoil();
             let theirs = &mut self.ties[other as usize].list;
             for found in theirs.iter_mut().filter(|found| found.particle == particle) {
                 found.turns[axis] += turns;
@@ -245,20 +254,18 @@ impl<const D: usize> Neighbours<D> {
     }
 
     /// Lists everybody whose anchor is near enough to that of `particle`.
-    fn gather(&self, particle: u32, radius_of: &impl Fn(u32) -> f64, list: &mut Vec<Found<D>>) {
+    fn gather(&self, particle: u32, radius: f64, list: &mut Vec<Found<D>>) {
         list.clear();
-        let Tie { anchor, leash, .. } = self.ties[particle as usize];
-        let own = radius_of(particle) + leash;
-        let rings = self.rings_for(particle, radius_of(particle) + 0.5 * self.largest);
-        self.cells.for_each_near(particle, rings, |found| {
-            let tie = &self.ties[found.particle as usize];
-            let mut apart = tie.anchor - anchor;
+        let own = self.cells.seat(particle);
+        let rings = self.rings_for(particle, radius + 0.5 * self.largest);
+        self.cells.for_each_seat(particle, rings, |found, seat| {
+            let mut apart = seat.anchor - own.anchor;
             if found.turns != [0; D] {
                 for axis in 0..D {
                     apart[axis] += f64::from(found.turns[axis]) * self.periods[axis];
                 }
             }
-            let reach = own + tie.leash + radius_of(found.particle);
+            let reach = own.reach + seat.reach;
             if apart.norm_squared() < reach * reach {
                 list.push(found);
             }
@@ -268,17 +275,34 @@ impl<const D: usize> Neighbours<D> {
     /// Takes a grain off the lists of all others.
     fn untie_partners(&mut self, particle: u32) {
         let mut partners = std::mem::take(&mut self.ties[particle as usize].list);
-        if self.ties[particle as usize].leash == 0.0 {
+        let at_rest = self.ties[particle as usize].leash == 0.0;
+        if at_rest {
             // It was at rest: only the others know who lists it.
             let rings = self.rings_for(particle, self.largest);
-            self.cells
-                .for_each_near(particle, rings, |found| partners.push(found));
+            let anchor = *self.anchor(particle);
+            self.cells.for_each_seat(particle, rings, |found, seat| {
+                let leash = self.ties[found.particle as usize].leash;
+                let mut apart = seat.anchor - anchor;
+                for axis in 0..D {
+                    apart[axis] += f64::from(found.turns[axis]) * self.periods[axis];
+                }
+                // Farther off than this it is on nobody's list, see `release`.
+                let reach = self.largest + leash;
+                if leash > 0.0 && apart.norm_squared() * ROUND < reach * reach {
+                    partners.push(found);
+                }
+            });
         }
         for other in &partners {
             let entry = other.seen_from(particle);
-            let list = &mut self.ties[other.particle as usize].list;
-            if let Some(place) = list.iter().position(|found| *found == entry) {
-                list.swap_remove(place);
+            let tie = &mut self.ties[other.particle as usize];
+            if let Some(place) = tie.list.iter().position(|found| *found == entry) {
+                tie.list.swap_remove(place);
+                if at_rest {
+                    tie.bed.spoil();
+                } else {
+                    tie.bed.mover_changed();
+                }
             }
         }
         // To be filled again.
@@ -302,12 +326,10 @@ fn leash_for(crowding: f64, dimension: usize) -> f64 {
 
 impl<const D: usize> Tie<D> {
     /// At rest.
-    fn at(position: Vector<D>) -> Self {
-        Tie {
-            anchor: position,
-            leash: 0.0,
-            lonely: true,
-            list: Vec::new(),
-        }
-    }
+    const LOOSE: Tie<D> = Tie {
+        leash: 0.0,
+        lonely: true,
+        list: Vec::new(),
+        bed: Bed::EMPTY,
+    };
 }

@@ -19,7 +19,7 @@ use crate::engine::neighbours::{Neighbours, SavedNeighbours};
 use crate::engine::queue::{EventQueue, Rank};
 use crate::engine::settings::{Collapse, Settings};
 use crate::engine::setup::check_parts;
-use crate::engine::simulation::Simulation;
+use crate::engine::simulation::{Simulation, listed_scale};
 use crate::engine::slot::{Partner, Slot};
 use crate::engine::transitions::Alarm;
 use crate::error::SetupError;
@@ -126,7 +126,11 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
         check_parts(&model, &saved.settings)?;
         saved.check(&model)?;
         let count = saved.bodies.len();
-        let near = Neighbours::restore(model.boundary(), &saved.near, count).map_err(wrong)?;
+        let radius_of = |largest: f64, id: u32| {
+            listed_scale::<M, D>(largest, saved.largest) * saved.bodies[id as usize].radius
+        };
+        let near =
+            Neighbours::restore(model.boundary(), &saved.near, count, radius_of).map_err(wrong)?;
         let mut modes = ModeCounts::default();
         let mut bodies = saved.bodies;
         for (id, body) in bodies.iter_mut().enumerate() {
@@ -139,7 +143,7 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
             queue.push_empty();
             queue.set(id as u32, slot.key(id as u32));
         }
-        let restored = Simulation {
+        let mut restored = Simulation {
             settings: saved.settings,
             world: World {
                 bodies,
@@ -149,6 +153,7 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
                 modes,
                 largest: saved.largest,
                 ledger: saved.ledger,
+                blur: 0.0,
             },
             memories: saved.memories,
             spins: saved.spins,
@@ -166,10 +171,12 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
             escaped: saved.escaped,
             commands: Commands::default(),
             scratch: Vec::new(),
+            candidates: Vec::new(),
             vigil: Vigil::default(),
             model,
         };
         for id in 0..count as u32 {
+            restored.world.keep_blur(&restored.model, id);
             restored.check_grain(id).map_err(wrong)?;
         }
         Ok(restored)

@@ -12,11 +12,13 @@
 //! on when it is asked for: it is always counted from the later of their last
 //! events, and the one with the smaller id comes first.
 
-use crate::engine::body::scale_at;
+use crate::engine::body::{LONG_AGO, World, flight_of, scale_at};
 use crate::engine::cells::Found;
 use crate::engine::simulation::Simulation;
 use crate::engine::slot::{Partner, contact_key};
-use crate::model::{Approach, Boundary, Dynamics, Encounter, Flight, Forecast, Model, Predictor};
+use crate::model::{
+    Approach, Boundary, Crowd, Dynamics, Encounter, Flight, Forecast, LANES, Model, Nook, Predictor,
+};
 use crate::particle::{Vector, WallId};
 use crate::time::Time;
 
@@ -24,19 +26,12 @@ use crate::time::Time;
 /// just collided are in the image in which they did.
 const IMAGE: f64 = 1.0 + 1.0e-6;
 
-/// Covers the rounding of a comparison of squared distances.
-const ROUND: f64 = 1.0 + 1.0e-12;
-
-/// A contact later than this, in √(d/g), bounds nobody's reach.
-const FAR: f64 = 1.0e3;
-
-/// Where a mobile grain is at its last event, and how far its surface comes
-/// before its next known contact.
-struct Sight<const D: usize> {
-    position: Vector<D>,
-    since: Time,
-    within: f64,
-    reach: f64,
+/// Somebody who may come first.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Candidate<const D: usize> {
+    /// Not before this, from now.
+    bound: f64,
+    found: Found<D>,
 }
 
 impl<M: Model<D>, const D: usize> Simulation<M, D> {
@@ -54,37 +49,129 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
 
     /// Looks at everybody on a grain's list, keeping what is known already.
     pub(super) fn predict_listed(&mut self, particle: u32) {
-        let mut found = std::mem::take(&mut self.scratch);
-        found.clear();
-        found.extend_from_slice(self.world.near.list(particle));
         if self.world.bodies[particle as usize].mode.is_static() {
-            self.tell_neighbours(particle, &found);
+            self.tell_neighbours(particle);
         } else {
             // The grain just left comes first: it is often the next, and a
             // near contact spares work on all others.
-            if let Partner::Particle(last) = self.traces[particle as usize].partner
-                && let Some(place) = found.iter().position(|other| other.particle == last)
-            {
-                found.swap(0, place);
+            let mut left = None;
+            if let Partner::Particle(last) = self.traces[particle as usize].partner {
+                let mut list = self.world.near.list(particle).iter();
+                left = list.find(|other| other.particle == last).copied();
             }
-            let mut sight = self.sight(particle);
-            for (place, other) in found.iter().enumerate() {
-                let mut nearer = false;
-                if place == 1 {
-                    nearer = self.meet_walls(particle);
-                }
-                nearer |= self.meet(&sight, particle, other);
-                if nearer {
-                    sight = self.sight(particle);
-                }
+            if let Some(other) = &left {
+                self.meet(particle, other);
             }
-            if found.len() < 2 {
-                self.meet_walls(particle);
-            }
+            self.meet_walls(particle);
+            self.meet_listed(particle, left);
         }
-        self.scratch = found;
         self.find_renewal(particle);
         self.enqueue(particle);
+    }
+
+    /// Notes the first contact with anybody on a grain's list, but for the one
+    /// that has been asked, if it comes before what is known already: nearly all
+    /// are told to come later by a bound, and the others are asked in the order
+    /// of their bounds.
+    fn meet_listed(&mut self, particle: u32, asked: Option<Found<D>>) {
+        let mut near = std::mem::take(&mut self.candidates);
+        self.find_candidates(particle, &mut near);
+        let now = self.world.clock;
+        while !near.is_empty() {
+            let (mut bound, mut place) = (near[0].bound, 0);
+            for (other, candidate) in near.iter().enumerate().skip(1) {
+                if candidate.bound < bound {
+                    (bound, place) = (candidate.bound, other);
+                }
+            }
+            if bound > self.slots[particle as usize].contact - now {
+                break;
+            }
+            let Candidate { found, .. } = near.swap_remove(place);
+            // Later than that bound, the other finds it anyway.
+            if asked != Some(found) {
+                self.meet(particle, &found);
+            }
+        }
+        near.clear();
+        self.candidates = near;
+    }
+
+    /// Everybody on a grain's list who may meet it before its known contact, and
+    /// a time before which they certainly do not, counted from now.
+    fn find_candidates(&mut self, particle: u32, candidates: &mut Vec<Candidate<D>>) {
+        let model = &self.model;
+        let World {
+            bodies,
+            near,
+            clock,
+            blur,
+            ..
+        } = &mut self.world;
+        let now = *clock;
+        let blur = *blur;
+        let scale = scale_at::<M, D>(model, now);
+        let growth = if M::Dynamics::GROWS {
+            model.dynamics().growth_rate() / scale
+        } else {
+            0.0
+        };
+        let body = &bodies[particle as usize];
+        let own = flight_of(model, particle, body).advanced(now - body.since);
+        let horizon = self.slots[particle as usize].contact - now;
+        let place = own.start() - near.anchor(particle);
+        let (bed, movers) = near.bed(particle, bodies);
+        let slots = &self.slots;
+        let mut add = |answers: [f64; LANES], few: &[Found<D>]| {
+            for (bound, found) in answers.into_iter().zip(few) {
+                // Later than that bound, the other finds it anyway. Written so
+                // that NaN is not later.
+                if bound > horizon || bound > slots[found.particle as usize].bound() - now {
+                    continue;
+                }
+                candidates.push(Candidate {
+                    bound: if bound > 0.0 { bound } else { 0.0 },
+                    found: *found,
+                });
+            }
+        };
+        for (resting, few) in bed.resting.iter().zip(bed.still.chunks(LANES)) {
+            let nook = Nook {
+                own: &own,
+                place,
+                resting,
+                scale,
+                growth,
+                blur,
+                horizon,
+            };
+            add(model.predictor().not_before_resting(&nook), few);
+        }
+        for few in movers.chunks(LANES) {
+            let found: [Found<D>; LANES] =
+                std::array::from_fn(|lane| few[if lane < few.len() { lane } else { 0 }]);
+            let theirs = found.map(|other| &bodies[other.particle as usize]);
+            let after = theirs.map(|body| now.since(body.since));
+            let shifted = found.iter().any(|other| other.turns != [0; D]);
+            let crowd = Crowd {
+                after,
+                shifts: shifted.then(|| found.map(|other| shift(model, other.turns, 1))),
+                distances: theirs.map(|other| (body.radius + other.radius) * scale),
+                growth,
+                blur,
+                horizon,
+            };
+            let flight = |lane: usize| flight_of(model, found[lane].particle, theirs[lane]);
+            let mut answers = model.predictor().not_before(&own, flight, &crowd);
+            if after.iter().any(|after| *after > LONG_AGO) {
+                for lane in 0..LANES {
+                    if after[lane] > LONG_AGO && !theirs[lane].still {
+                        answers[lane] = 0.0;
+                    }
+                }
+            }
+            add(answers, few);
+        }
     }
 
     pub(super) fn enqueue(&mut self, particle: u32) {
@@ -94,65 +181,24 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
     }
 
     /// Lets every mobile neighbour note its contact with a static grain.
-    fn tell_neighbours(&mut self, particle: u32, found: &[Found<D>]) {
-        for other in found {
+    fn tell_neighbours(&mut self, particle: u32) {
+        let mut found = std::mem::take(&mut self.scratch);
+        found.clear();
+        found.extend_from_slice(self.world.near.list(particle));
+        for other in &found {
             if self.world.bodies[other.particle as usize].mode.is_mobile() {
-                let sight = self.sight(other.particle);
-                if self.meet(&sight, other.particle, &other.seen_from(particle)) {
+                if self.meet(other.particle, &other.seen_from(particle)) {
                     self.enqueue(other.particle);
                 }
             }
         }
-    }
-
-    /// Where a mobile grain is and how far it comes.
-    #[inline]
-    fn sight(&self, particle: u32) -> Sight<D> {
-        let body = &self.world.bodies[particle as usize];
-        let flight = self.world.flight(&self.model, particle);
-        let within = self.slots[particle as usize].contact - body.since;
-        let travel = if within < FAR && !M::Dynamics::GROWS {
-            flight.speed_bound(within) * within
-        } else {
-            f64::INFINITY
-        };
-        Sight {
-            position: flight.position(0.0),
-            since: body.since,
-            within,
-            reach: body.radius + travel,
-        }
-    }
-
-    /// Whether another grain is out of a mobile grain's reach up to the grain's
-    /// next known contact. Most are, and this is cheap.
-    #[inline]
-    fn is_out_of_reach(&self, sight: &Sight<D>, other: &Found<D>) -> bool {
-        let far = &self.world.bodies[other.particle as usize];
-        let mut reach = sight.reach + far.radius;
-        let mut apart = far.position - sight.position;
-        if !far.still {
-            let since_far = sight.since - far.since;
-            if since_far < 0.0 || reach == f64::INFINITY {
-                return false;
-            }
-            let flight = self.world.flight(&self.model, other.particle);
-            apart = flight.position(since_far) - sight.position;
-            reach += flight.speed_bound(since_far + sight.within) * sight.within;
-        }
-        if other.turns != [0; D] {
-            apart += self.shift(other.turns, 1);
-        }
-        apart.norm_squared() > ROUND * reach * reach
+        self.scratch = found;
     }
 
     /// Notes a mobile grain's contact with another if it comes first; true if
     /// it did.
     #[inline]
-    fn meet(&mut self, sight: &Sight<D>, particle: u32, other: &Found<D>) -> bool {
-        if self.is_out_of_reach(sight, other) {
-            return false;
-        }
+    fn meet(&mut self, particle: u32, other: &Found<D>) -> bool {
         let until = self.slots[particle as usize].contact;
         let Some(time) = self.pair_contact(particle, other.particle, other.turns, until) else {
             return false;
@@ -226,7 +272,7 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
         if b.since < base {
             flight_b = flight_b.advanced(base - b.since);
         }
-        let shift = self.shift(turns, sign);
+        let shift = shift(model, turns, sign);
         let sum = a.radius + b.radius;
         let mut distance = sum * scale_at::<M, D>(model, base);
         let growth = if M::Dynamics::GROWS {
@@ -234,7 +280,7 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
         } else {
             0.0
         };
-        let apart = flight_b.position(0.0) + shift - flight_a.position(0.0);
+        let apart = flight_b.start() + shift - flight_a.start();
         let squared = apart.norm_squared();
         let contact = distance * distance;
         if squared < contact && base == self.world.clock {
@@ -338,19 +384,6 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
         }
     }
 
-    /// The vector of `turns` periods, in d.
-    fn shift(&self, turns: [i32; D], sign: i32) -> Vector<D> {
-        let mut shift = Vector::zeros();
-        if turns != [0; D] {
-            for axis in 0..D {
-                if let Some(period) = self.model.boundary().period(axis) {
-                    shift[axis] = f64::from(sign * turns[axis]) * period.length;
-                }
-            }
-        }
-        shift
-    }
-
     /// Finds until when a grain is certain to stay within its leash.
     pub(super) fn find_renewal(&mut self, particle: u32) {
         let flight = self.world.flight(&self.model, particle);
@@ -361,23 +394,35 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
         }
         let after = self.world.clock - self.world.bodies[particle as usize].since;
         let flight = flight.advanced(after);
-        let slack = self
-            .world
-            .near
-            .slack(particle, &flight.position(0.0))
-            .max(0.0);
+        let slack = self.world.near.slack(particle, &flight.start()).max(0.0);
         // Within a time t it goes no farther than its top speed then times t.
         let safe = |window: f64| f64::min(window, slack / flight.speed_bound(window));
         let mut certain = safe(1.0);
+        // Slower at first, it may be certain for longer.
+        let mut longer = safe(2.0 * certain);
         // A slow grain needs looking after no more often than a fast one needs
         // in the time it takes to go as far.
-        loop {
-            let longer = safe(2.0 * certain);
-            if longer <= certain {
+        while longer > certain {
+            certain = longer;
+            if certain < 1.0 {
                 break;
             }
-            certain = longer;
+            longer = safe(2.0 * certain);
         }
         slot.renewal = self.world.clock + certain;
     }
+}
+
+/// The vector of `turns` periods, in d.
+#[inline]
+fn shift<M: Model<D>, const D: usize>(model: &M, turns: [i32; D], sign: i32) -> Vector<D> {
+    let mut shift = Vector::zeros();
+    if turns != [0; D] {
+        for axis in 0..D {
+            if let Some(period) = model.boundary().period(axis) {
+                shift[axis] = f64::from(sign * turns[axis]) * period.length;
+            }
+        }
+    }
+    shift
 }

@@ -84,6 +84,7 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
                 modes: ModeCounts::default(),
                 largest,
                 ledger: Ledger::default(),
+                blur: 0.0,
             },
             memories: vec![MemoryOf::<M, D>::default(); count],
             spins: vec![SpinOf::<M, D>::default(); count],
@@ -101,6 +102,7 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
             escaped: None,
             commands: Commands::default(),
             scratch: Vec::new(),
+            candidates: Vec::new(),
             vigil: Vigil::default(),
             model,
         };
@@ -179,6 +181,7 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
         let index = self.world.bodies.len() as u32 - 1;
         let at_rest = self.world.flight(&self.model, index).is_at_rest();
         self.world.bodies[index as usize].still = particle.mode.is_static() && at_rest;
+        self.world.keep_blur(&self.model, index);
         self.world.masses.push(particle.mass);
         *self.world.modes.of(particle.mode) += 1;
         self.traces.add();

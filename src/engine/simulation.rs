@@ -8,6 +8,7 @@ use crate::engine::counts::{Counts, ModeCounts};
 use crate::engine::guards::Traces;
 use crate::engine::neighbours::Neighbours;
 use crate::engine::queue::EventQueue;
+use crate::engine::search::Candidate;
 use crate::engine::settings::{Collapse, Settings};
 use crate::engine::slot::Slot;
 use crate::engine::transitions::Alarm;
@@ -42,6 +43,7 @@ pub struct Simulation<M: Model<D>, const D: usize> {
     pub(super) escaped: Option<ParticleId>,
     pub(super) commands: Commands<EventOf<M, D>>,
     pub(super) scratch: Vec<Found<D>>,
+    pub(super) candidates: Vec<Candidate<D>>,
     pub(super) vigil: Vigil,
 }
 
@@ -146,6 +148,11 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
             })
             .collect();
         self.world.near = Neighbours::new(self.model.boundary(), &positions, largest);
+        let scale = self.listed_scale();
+        for particle in 0..count {
+            let radius = scale * self.world.bodies[particle as usize].radius;
+            self.world.near.set_radius(particle, radius);
+        }
         for particle in 0..count {
             self.tie_if_moving(particle);
         }
@@ -181,18 +188,17 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
         let flight = flight_of(&self.model, particle, body);
         let after = *clock - body.since;
         let scale = listed_scale::<M, D>(near.largest(), *largest);
-        let radius_of = |other: u32| scale * bodies[other as usize].radius;
         near.tie(
             particle,
             &flight.position(after),
             &flight.velocity(after),
-            radius_of,
+            scale * body.radius,
         );
     }
 }
 
 /// As large as grains may become on this grid.
-fn listed_scale<M: Model<D>, const D: usize>(for_largest: f64, largest: f64) -> f64 {
+pub(super) fn listed_scale<M: Model<D>, const D: usize>(for_largest: f64, largest: f64) -> f64 {
     if M::Dynamics::GROWS {
         for_largest / largest
     } else {

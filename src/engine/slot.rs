@@ -50,16 +50,28 @@ impl Slot {
     }
 
     /// The entry of a grain with this slot.
+    #[inline]
     pub(super) fn key(&self, particle: u32) -> Key {
-        let own = |time, rank| Key {
-            time,
-            rank,
-            low: particle,
-            high: particle,
-        };
-        self.contact_key(particle)
-            .min(own(self.sleep, Rank::Sleep))
-            .min(own(self.renewal, Rank::Transfer))
+        // At equal times the first of these comes first.
+        let mut time = self.contact;
+        let mut own = None;
+        if self.sleep < time {
+            time = self.sleep;
+            own = Some(Rank::Sleep);
+        }
+        if self.renewal < time {
+            time = self.renewal;
+            own = Some(Rank::Transfer);
+        }
+        match own {
+            None => self.contact_key(particle),
+            Some(rank) => Key {
+                time,
+                rank,
+                low: particle,
+                high: particle,
+            },
+        }
     }
 }
 

@@ -100,7 +100,8 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
         let body = &self.world.bodies[particle as usize];
         if body.mode.is_static() && self.world.flight(&self.model, particle).is_at_rest() {
             let position = body.position;
-            self.world.near.release(particle, &position);
+            let radius = self.listed_scale() * body.radius;
+            self.world.near.release(particle, &position, radius);
         }
     }
 

@@ -27,6 +27,17 @@ pub trait Flight<const D: usize>: Copy {
     /// Velocity `after` the start, in √(gd).
     fn velocity(&self, after: f64) -> Vector<D>;
 
+    /// Centre at the start, in d: `position(0.0)`, said in a way that costs
+    /// nothing.
+    fn start(&self) -> Vector<D> {
+        self.position(0.0)
+    }
+
+    /// Velocity at the start, in √(gd): `velocity(0.0)`.
+    fn start_velocity(&self) -> Vector<D> {
+        self.velocity(0.0)
+    }
+
     /// The same motion counted from `after` its start.
     fn advanced(&self, after: f64) -> Self;
 

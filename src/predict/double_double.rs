@@ -1,11 +1,13 @@
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
+use wide::f64x4;
+
 use super::Real;
 
 /// A number as the unevaluated sum of two `f64`, about 32 decimal digits.
 ///
-/// Sums and products after Dekker 1971, doi:10.1007/BF01397083, without fused
-/// multiply-add, so that every machine gives the same bits. Relative error of
+/// Sums and products after Dekker 1971, doi:10.1007/BF01397083: the error of a
+/// product is exact, so every machine gives the same bits. Relative error of
 /// an operation below 2⁻¹⁰⁰; products are right while their parts neither
 /// overflow nor vanish, that is for sizes of 10⁻¹⁴⁰ … 10¹⁴⁰.
 ///
@@ -25,9 +27,64 @@ pub struct DoubleDouble {
     low: f64,
 }
 
+/// Numbers whose rounding errors can be caught: one, or one on each lane.
+pub(super) trait Exact:
+    Copy + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self>
+{
+    /// a · b − product, for the rounded product of a and b; exact. A fused
+    /// multiplication gives the same digits as Dekker's 17 operations, and is
+    /// used where the build's target has one.
+    fn product_error(a: Self, b: Self, product: Self) -> Self;
+}
+
+#[cfg(target_feature = "fma")]
+impl Exact for f64 {
+    #[inline(always)]
+    fn product_error(a: f64, b: f64, product: f64) -> f64 {
+        a.mul_add(b, -product)
+    }
+}
+
+#[cfg(target_feature = "fma")]
+impl Exact for f64x4 {
+    #[inline(always)]
+    fn product_error(a: f64x4, b: f64x4, product: f64x4) -> f64x4 {
+        a.mul_sub(b, product)
+    }
+}
+
+#[cfg(not(target_feature = "fma"))]
+impl Exact for f64 {
+    #[inline(always)]
+    fn product_error(a: f64, b: f64, product: f64) -> f64 {
+        dekker(a, b, product, 134_217_729.0)
+    }
+}
+
+#[cfg(not(target_feature = "fma"))]
+impl Exact for f64x4 {
+    #[inline(always)]
+    fn product_error(a: f64x4, b: f64x4, product: f64x4) -> f64x4 {
+        dekker(a, b, product, f64x4::splat(134_217_729.0))
+    }
+}
+
+/// The error of a product from the upper 26 digits of its factors and the rests.
+#[cfg(not(target_feature = "fma"))]
+#[inline(always)]
+fn dekker<N: Exact>(a: N, b: N, product: N, splitter: N) -> N {
+    let split = |x: N| {
+        let shifted = splitter * x;
+        let high = shifted - (shifted - x);
+        (high, x - high)
+    };
+    let ((a_high, a_low), (b_high, b_low)) = (split(a), split(b));
+    ((a_high * b_high - product) + a_high * b_low + a_low * b_high) + a_low * b_low
+}
+
 /// a + b exactly.
-#[inline]
-pub(super) fn two_sum(a: f64, b: f64) -> (f64, f64) {
+#[inline(always)]
+pub(super) fn two_sum<N: Exact>(a: N, b: N) -> (N, N) {
     let sum = a + b;
     let part = sum - a;
     (sum, (a - (sum - part)) + (b - part))
@@ -40,33 +97,17 @@ fn quick_two_sum(a: f64, b: f64) -> (f64, f64) {
     (sum, b - (sum - a))
 }
 
-/// The upper 26 digits and the rest.
-#[inline]
-fn split(a: f64) -> (f64, f64) {
-    let shifted = 134_217_729.0 * a;
-    let high = shifted - (shifted - a);
-    (high, a - high)
-}
-
 /// a · b exactly.
-#[inline]
-pub(super) fn two_product(a: f64, b: f64) -> (f64, f64) {
+#[inline(always)]
+pub(super) fn two_product<N: Exact>(a: N, b: N) -> (N, N) {
     let product = a * b;
-    let (a_high, a_low) = split(a);
-    let (b_high, b_low) = split(b);
-    let error = ((a_high * b_high - product) + a_high * b_low + a_low * b_high) + a_low * b_low;
-    (product, error)
+    (product, N::product_error(a, b, product))
 }
 
 /// a² exactly.
-#[inline]
-pub(super) fn two_square(a: f64) -> (f64, f64) {
-    let square = a * a;
-    let (high, low) = split(a);
-    (
-        square,
-        ((high * high - square) + 2.0 * (high * low)) + low * low,
-    )
+#[inline(always)]
+pub(super) fn two_square<N: Exact>(a: N) -> (N, N) {
+    two_product(a, a)
 }
 
 impl DoubleDouble {

@@ -28,8 +28,8 @@ impl<const D: usize> Relative<D> {
         let (first, second) = (&approach.first, &approach.second);
         Relative {
             // In this order it is odd under the swap, to the last bit.
-            offset: (second.position(0.0) - first.position(0.0)) + approach.shift,
-            velocity: second.velocity(0.0) - first.velocity(0.0),
+            offset: (second.start() - first.start()) + approach.shift,
+            velocity: second.start_velocity() - first.start_velocity(),
             acceleration: if F::ACCELERATES {
                 second.acceleration() - first.acceleration()
             } else {
@@ -138,7 +138,7 @@ impl<N: Real> GapPolynomial<N> {
             std::array::from_fn(|axis| N::from_f64(to[axis]) - N::from_f64(from[axis]))
         };
         let (first, second) = (&approach.first, &approach.second);
-        let mut offset: [N; D] = difference(&second.position(0.0), &first.position(0.0));
+        let mut offset: [N; D] = difference(&second.start(), &first.start());
         for (along, &shift) in offset.iter_mut().zip(approach.shift.iter()) {
             *along = *along + N::from_f64(shift);
         }
@@ -150,7 +150,7 @@ impl<N: Real> GapPolynomial<N> {
         let accelerated = acceleration.iter().any(|a| *a != N::ZERO);
         let exact = Exact {
             offset,
-            velocity: difference(&second.velocity(0.0), &first.velocity(0.0)),
+            velocity: difference(&second.start_velocity(), &first.start_velocity()),
             acceleration,
             distance: N::from_f64(approach.distance),
             growth: N::from_f64(approach.growth),

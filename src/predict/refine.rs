@@ -4,9 +4,12 @@
 //! computed with twice the digits, from the flights themselves, and Newton's
 //! method takes the time from a certain lower bound to the root.
 
+use wide::f64x4;
+
 use super::double_double::{two_product, two_square, two_sum};
 use super::gap::{CERTAIN, GapPolynomial};
 use crate::model::{Approach, PolynomialFlight};
+use crate::particle::Vector;
 
 /// Newton steps; each is at least ten times smaller than the one before.
 const MOST_STEPS: usize = 16;
@@ -30,8 +33,21 @@ impl Sum {
     }
 }
 
+/// Components along up to four axes from `first` on, zeros beyond the last.
+#[inline(always)]
+fn some<const D: usize>(v: &Vector<D>, first: usize) -> f64x4 {
+    f64x4::new(std::array::from_fn(|lane| {
+        if first + lane < D {
+            v[first + lane]
+        } else {
+            0.0
+        }
+    }))
+}
+
 /// The gap at a time: f, or if they have just collided f/t with f(0) counted as
-/// zero. Right to 2⁻⁹⁸ of its size.
+/// zero. Right to 2⁻⁹⁸ of its size. All axes are worked at together, and added
+/// up in their order.
 #[inline]
 fn residual<const D: usize, F: PolynomialFlight<D>>(
     approach: &Approach<D, F>,
@@ -39,42 +55,49 @@ fn residual<const D: usize, F: PolynomialFlight<D>>(
     t: f64,
 ) -> f64 {
     let (first, second) = (&approach.first, &approach.second);
-    let (from, to) = (first.position(0.0), second.position(0.0));
-    let (before, after) = (first.velocity(0.0), second.velocity(0.0));
     let (distance, growth, touching) = (approach.distance, approach.growth, approach.touching);
+    let wide = f64x4::splat;
     let mut total = Sum {
         high: 0.0,
         low: 0.0,
     };
-    for axis in 0..D {
+    for from in (0..D).step_by(4) {
         // Leading digits in each first part, what they leave in the second.
-        let (apart, rest) = two_sum(to[axis], -from[axis]);
-        let (place, place_rest) = two_sum(apart, approach.shift[axis]);
+        let (apart, rest) = two_sum(some(&second.start(), from), -some(&first.start(), from));
+        let (place, place_rest) = two_sum(apart, some(&approach.shift, from));
         // The rest may be of digits far above those of so short a sum.
         let (place, place_rest) = two_sum(place, place_rest + rest);
         // Mean velocity up to t.
-        let (mut speed, mut speed_rest) = two_sum(after[axis], -before[axis]);
+        let (mut speed, mut speed_rest) = two_sum(
+            some(&second.start_velocity(), from),
+            -some(&first.start_velocity(), from),
+        );
         if bent {
-            let (pull, rest) = two_sum(second.acceleration()[axis], -first.acceleration()[axis]);
-            if pull != 0.0 {
-                let (gained, gained_rest) = two_product(0.5 * t, pull);
-                let (sum, sum_rest) = two_sum(speed, gained);
-                speed = sum;
-                speed_rest += sum_rest + gained_rest + 0.5 * t * rest;
-            }
+            let (pull, rest) = two_sum(
+                some(&second.acceleration(), from),
+                -some(&first.acceleration(), from),
+            );
+            let (gained, gained_rest) = two_product(wide(0.5 * t), pull);
+            let (sum, sum_rest) = two_sum(speed, gained);
+            speed = sum;
+            speed_rest += sum_rest + gained_rest + wide(0.5 * t) * rest;
         }
-        let (way, mut way_rest) = two_product(t, speed);
-        way_rest += t * speed_rest;
-        if touching {
-            let (sum, rest) = two_sum(2.0 * place, way);
-            let rest = rest + (2.0 * place_rest + way_rest);
+        let (way, mut way_rest) = two_product(wide(t), speed);
+        way_rest += wide(t) * speed_rest;
+        let (terms, rests) = if touching {
+            let (sum, rest) = two_sum(wide(2.0) * place, way);
+            let rest = rest + (wide(2.0) * place_rest + way_rest);
             let (product, error) = two_product(speed, sum);
-            total.add((product, error + (speed * rest + speed_rest * sum)));
+            (product, error + (speed * rest + speed_rest * sum))
         } else {
             let (sum, rest) = two_sum(place, way);
             let rest = rest + (place_rest + way_rest);
             let (square, error) = two_square(sum);
-            total.add((square, error + 2.0 * sum * rest));
+            (square, error + wide(2.0) * sum * rest)
+        };
+        let (terms, rests) = (terms.to_array(), rests.to_array());
+        for (lane, term) in terms.into_iter().enumerate().take(D - from) {
+            total.add((term, rests[lane]));
         }
     }
     if growth == 0.0 {

@@ -1,7 +1,6 @@
 //! Whether the grid's book-keeping holds.
 
 use crate::engine::cells::{Cells, NONE};
-use crate::particle::Vector;
 
 /// How far beyond the edge of its cell, over that edge, rounding may put a
 /// grain: periods are taken off its place and off its cell separately.
@@ -9,12 +8,9 @@ const ROUND: f64 = 1.0e-9;
 
 impl<const D: usize> Cells<D> {
     /// A grain has to sit in the cell of its anchor, and on that cell's list.
-    pub(in crate::engine) fn check_seat(
-        &self,
-        particle: u32,
-        anchor: &Vector<D>,
-    ) -> Result<(), String> {
+    pub(in crate::engine) fn check_seat(&self, particle: u32) -> Result<(), String> {
         let seat = &self.seats[particle as usize];
+        let anchor = &seat.anchor;
         for axis in 0..D {
             let this = &self.axes[axis];
             let cell = f64::from(seat.cell[axis]);

@@ -6,6 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::engine::cells::{Axis, Cells, NONE, Seat};
 use crate::model::Boundary;
+use crate::particle::Vector;
 
 /// No cell of a run has coordinates beyond this.
 const FARTHEST: i32 = 1 << 30;
@@ -93,6 +94,8 @@ impl<const D: usize> Cells<D> {
                 return Err("a grain lies in no cell");
             }
             seats.push(Seat {
+                anchor: Vector::zeros(),
+                reach: 0.0,
                 cell: (*cell).into(),
                 next: NONE,
                 previous: NONE,

@@ -149,7 +149,7 @@ fn faults_of_lists_are_seen() {
 
     let mut loose = heap();
     let place = loose.world.bodies[mover as usize].position;
-    loose.world.near.release(mover, &place);
+    loose.world.near.release(mover, &place, 0.5);
     seen(&loose, "list");
 
     let mut misfiled = heap();

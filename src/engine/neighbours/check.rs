@@ -16,8 +16,8 @@ impl<const D: usize> Neighbours<D> {
         position: &Vector<D>,
     ) -> Result<(), String> {
         let tie = &self.ties[particle as usize];
-        self.cells.check_seat(particle, &tie.anchor)?;
-        let strayed = (position - tie.anchor).norm();
+        self.cells.check_seat(particle)?;
+        let strayed = (position - self.anchor(particle)).norm();
         // Rounding of the place itself, far from the origin.
         let rounding = 1.0e-12 * (self.largest + position.norm());
         if strayed > tie.leash + rounding {
@@ -61,7 +61,7 @@ impl<const D: usize> Neighbours<D> {
             if other == particle as usize {
                 continue;
             }
-            let apart = their.anchor - tie.anchor;
+            let apart = self.anchor(other as u32) - self.anchor(particle);
             let contact = radius_of(particle) + radius_of(other as u32);
             let reach = ROUND * (contact + tie.leash + their.leash);
             let mut absent = None;
@@ -133,6 +133,9 @@ impl<const D: usize> Neighbours<D> {
 
     /// Plants a fault: a grain is filed in another cell than its own.
     pub(in crate::engine) fn misfile(&mut self, particle: u32, position: &Vector<D>) {
-        self.cells.refile(particle, position);
+        let reach = self.cells.seat(particle).reach;
+        let anchor = self.cells.seat(particle).anchor;
+        self.cells.refile(particle, position, reach);
+        self.cells.seat_at(particle, &anchor, reach);
     }
 }

@@ -4,7 +4,7 @@ use nalgebra::SVector;
 use serde::{Deserialize, Serialize};
 
 use crate::engine::cells::{Cells, Found, SavedCells};
-use crate::engine::neighbours::{Neighbours, Tie};
+use crate::engine::neighbours::{Bed, Neighbours, Tie};
 use crate::model::Boundary;
 use crate::particle::Vector;
 
@@ -33,8 +33,8 @@ struct SavedTie<const D: usize> {
 
 impl<const D: usize> Neighbours<D> {
     pub(in crate::engine) fn save(&self) -> SavedNeighbours<D> {
-        let of = |tie: &Tie<D>| SavedTie {
-            anchor: tie.anchor,
+        let of = |(particle, tie): (usize, &Tie<D>)| SavedTie {
+            anchor: *self.anchor(particle as u32),
             leash: tie.leash,
             lonely: tie.lonely,
             list: tie
@@ -45,13 +45,14 @@ impl<const D: usize> Neighbours<D> {
         };
         SavedNeighbours {
             cells: self.cells.save(),
-            ties: self.ties.iter().map(of).collect(),
+            ties: self.ties.iter().enumerate().map(of).collect(),
             largest: self.largest,
             longest: self.longest,
         }
     }
 
-    /// The lists of `count` grains that were saved.
+    /// The lists of `count` grains that were saved. `radius_of` gives their
+    /// radii, in d, on a grid for this largest diameter.
     ///
     /// # Errors
     ///
@@ -60,6 +61,7 @@ impl<const D: usize> Neighbours<D> {
         boundary: &B,
         saved: &SavedNeighbours<D>,
         count: usize,
+        radius_of: impl Fn(f64, u32) -> f64,
     ) -> Result<Self, &'static str> {
         let positive = |length: f64| length > 0.0 && length.is_finite();
         if saved.ties.len() != count || !positive(saved.largest) || !positive(saved.longest) {
@@ -84,14 +86,19 @@ impl<const D: usize> Neighbours<D> {
                 });
             }
             ties.push(Tie {
-                anchor: tie.anchor,
                 leash: tie.leash,
                 lonely: tie.lonely,
                 list,
+                bed: Bed::EMPTY,
             });
         }
+        let mut cells = Cells::restore(boundary, &saved.cells, count)?;
+        for (particle, tie) in (0..).zip(&saved.ties) {
+            let reach = radius_of(saved.largest, particle) + tie.leash;
+            cells.seat_at(particle, &tie.anchor, reach);
+        }
         let neighbours = Neighbours {
-            cells: Cells::restore(boundary, &saved.cells, count)?,
+            cells,
             ties,
             largest: saved.largest,
             longest: saved.longest,
