@@ -194,18 +194,7 @@ impl RunFolder {
     ///
     /// When another process is at it already.
     pub fn lock(&self) -> Result<File, FolderError> {
-        // Where a folder can't be opened, a file that is never replaced will do.
-        let opened = File::open(&self.path).or_else(|_| File::open(self.file("scenario.toml")));
-        let opened = opened.map_err(|source| FolderError::Io {
-            file: self.path.display().to_string(),
-            source,
-        })?;
-        match opened.try_lock() {
-            Err(TryLockError::WouldBlock) => Err(FolderError::InUse {
-                folder: self.path.display().to_string(),
-            }),
-            Ok(()) | Err(TryLockError::Error(_)) => Ok(opened),
-        }
+        lock(&self.path, "scenario.toml")
     }
 
     /// Takes a run that has come to nothing away again, and the folders that
@@ -318,6 +307,27 @@ impl RunFolder {
             file: file.display().to_string(),
             source,
         })
+    }
+}
+
+/// Keeps other processes from writing to a folder as long as the file stays
+/// open, where the file system can do that.
+///
+/// # Errors
+///
+/// When another process is at it already.
+pub(crate) fn lock(folder: &Path, instead: &str) -> Result<File, FolderError> {
+    // Where a folder can't be opened, a file that is never replaced will do.
+    let opened = File::open(folder).or_else(|_| File::open(folder.join(instead)));
+    let opened = opened.map_err(|source| FolderError::Io {
+        file: folder.display().to_string(),
+        source,
+    })?;
+    match opened.try_lock() {
+        Err(TryLockError::WouldBlock) => Err(FolderError::InUse {
+            folder: folder.display().to_string(),
+        }),
+        Ok(()) | Err(TryLockError::Error(_)) => Ok(opened),
     }
 }
 
