@@ -337,7 +337,7 @@ fn is_part(name: &str) -> bool {
 }
 
 /// The names of everything in a folder, in order.
-fn names_in(path: &Path) -> io::Result<Vec<String>> {
+pub(crate) fn names_in(path: &Path) -> io::Result<Vec<String>> {
     let mut names = fs::read_dir(path)?
         .map(|entry| Ok(entry?.file_name().to_string_lossy().into_owned()))
         .collect::<io::Result<Vec<String>>>()?;

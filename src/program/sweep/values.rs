@@ -1,0 +1,225 @@
+//! `--set path=value,value,…`.
+
+use std::str::FromStr;
+
+use crate::scenario::{Assignment, Path};
+
+/// A value of a scenario, and all that it is to be.
+#[derive(Clone, Debug)]
+pub(in crate::program) struct Variation {
+    pub(super) path: Path,
+    /// At least one.
+    pub(super) values: Vec<Assignment>,
+    /// What was typed.
+    pub(super) text: String,
+}
+
+impl Variation {
+    /// One value for all runs.
+    pub(super) fn fixed(value: Assignment) -> Self {
+        Variation {
+            path: value.path.clone(),
+            text: value.text.clone(),
+            values: vec![value],
+        }
+    }
+}
+
+/// A list of values that can't be read.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+pub(in crate::program) enum ParseVariationError {
+    #[error("`{0}` has no `=`: write path=value,value, such as parameters.sleep_speed=0.05,0.1")]
+    NoValue(String),
+    #[error(
+        "value {0} of the list is empty: write values between the commas, an empty text as \"\""
+    )]
+    Empty(usize),
+    #[error("the {0} that opens value {1} of the list is never closed")]
+    Open(char, usize),
+    #[error("{0}")]
+    Assignment(String),
+}
+
+impl FromStr for Variation {
+    type Err = ParseVariationError;
+
+    fn from_str(text: &str) -> Result<Self, Self::Err> {
+        let (path, list) = text
+            .split_once('=')
+            .ok_or_else(|| ParseVariationError::NoValue(text.to_owned()))?;
+        let values = split(list)?
+            .into_iter()
+            .map(|value| format!("{path}={value}").parse())
+            .collect::<Result<Vec<Assignment>, _>>()
+            .map_err(|error| ParseVariationError::Assignment(error.to_string()))?;
+        let path = values.first().map(|value| value.path.clone());
+        Ok(Variation {
+            path: path.unwrap_or_default(),
+            values,
+            text: format!("--set {text}"),
+        })
+    }
+}
+
+/// The values of a list, without the blanks around them.
+///
+/// A comma separates values unless it stands in brackets or in a quoted text. A
+/// quoted text is one inside of brackets or one that a value begins with, so
+/// that `it's` is nothing special.
+fn split(list: &str) -> Result<Vec<&str>, ParseVariationError> {
+    let mut values = Vec::new();
+    let mut rest = list;
+    loop {
+        let number = values.len() + 1;
+        let length =
+            length_of_first(rest).map_err(|open| ParseVariationError::Open(open, number))?;
+        let value = rest[..length].trim();
+        if value.is_empty() {
+            return Err(ParseVariationError::Empty(number));
+        }
+        values.push(value);
+        match rest[length..].strip_prefix(',') {
+            Some(after) => rest = after,
+            None => return Ok(values),
+        }
+    }
+}
+
+/// How many bytes come before the first comma that separates, or what is never
+/// closed.
+fn length_of_first(list: &str) -> Result<usize, char> {
+    let mut open: Vec<char> = Vec::new();
+    let mut begun = false;
+    let mut at = 0;
+    while let Some(letter) = list[at..].chars().next() {
+        match letter {
+            ',' if open.is_empty() => return Ok(at),
+            '"' | '\'' if !begun || !open.is_empty() => {
+                begun = true;
+                at += length_of_text(&list[at..], letter).ok_or(letter)?;
+                continue;
+            }
+            '[' | '{' => open.push(letter),
+            // What closes nothing is left to whoever reads the value.
+            ']' | '}' => drop(open.pop()),
+            _ => {}
+        }
+        begun |= !letter.is_whitespace();
+        at += letter.len_utf8();
+    }
+    open.first().map_or(Ok(at), |&open| Err(open))
+}
+
+/// How many bytes a quoted text at the beginning of `text` has, with its quotes:
+/// one, or three as TOML has them, too. `None` if it does not end.
+fn length_of_text(text: &str, quote: char) -> Option<usize> {
+    let three: String = [quote; 3].iter().collect();
+    let mark = if text.starts_with(&three) { 3 } else { 1 };
+    let mut at = mark;
+    loop {
+        let letter = text[at..].chars().next()?;
+        if letter == quote && (mark == 1 || text[at..].starts_with(&three)) {
+            return Some(at + mark);
+        }
+        at += letter.len_utf8();
+        if letter == '\\' && quote == '"' {
+            at += text[at..].chars().next()?.len_utf8();
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use proptest::prelude::*;
+    use toml::Value;
+
+    use super::*;
+
+    #[test]
+    fn commas_in_brackets_and_quotes_separate_nothing() {
+        for (list, wanted) in [
+            ("0.05", &["0.05"][..]),
+            ("0.05, 0.1 ,never", &["0.05", "0.1", "never"]),
+            ("[0, -1],[0.1, -1]", &["[0, -1]", "[0.1, -1]"]),
+            (
+                "{periodic={length=5}},{walls={low=0,restitution=0.5}},open",
+                &[
+                    "{periodic={length=5}}",
+                    "{walls={low=0,restitution=0.5}}",
+                    "open",
+                ],
+            ),
+            ("\"one, two\",three", &["\"one, two\"", "three"]),
+            ("'a,\\',b", &["'a,\\'", "b"]),
+            ("\"a\\\",b\",c", &["\"a\\\",b\"", "c"]),
+            ("\"\"\"a\",b\"\"\",c", &["\"\"\"a\",b\"\"\"", "c"]),
+            ("[\"]\",1],2", &["[\"]\",1]", "2"]),
+            ("it's,fine", &["it's", "fine"]),
+            ("\"\"", &["\"\""]),
+            ("α,β", &["α", "β"]),
+            ("a],b", &["a]", "b"]),
+        ] {
+            assert_eq!(split(list).unwrap(), wanted, "{list}");
+        }
+    }
+
+    #[test]
+    fn what_is_no_list_is_refused() {
+        for (text, wanted) in [
+            ("parameters.sleep_speed", "has no `=`"),
+            ("a=", "value 1 of the list is empty"),
+            ("a=1,,2", "value 2 of the list is empty"),
+            ("a=1,2,", "value 3 of the list is empty"),
+            (
+                "a=1,[2",
+                "the [ that opens value 2 of the list is never closed",
+            ),
+            ("a={b=[1}", "never closed"),
+            ("a=\"b,c", "the \" that opens value 1"),
+            ("a..b=1", "no path"),
+        ] {
+            let error = text.parse::<Variation>().unwrap_err();
+            assert!(error.to_string().contains(wanted), "{text}: {error}");
+        }
+    }
+
+    /// Values of TOML with everything in them that could be taken for something
+    /// else.
+    fn value() -> impl Strategy<Value = Value> {
+        let text = "[a,\\[\\]{}'\"\\\\= \\n#α]{0,8}";
+        let leaf = prop_oneof![
+            any::<i64>().prop_map(Value::Integer),
+            (-1.0e3..1.0e3).prop_map(Value::Float),
+            any::<bool>().prop_map(Value::Boolean),
+            text.prop_map(Value::String),
+        ];
+        leaf.prop_recursive(3, 12, 4, |inner| {
+            prop_oneof![
+                prop::collection::vec(inner.clone(), 0..4).prop_map(Value::Array),
+                prop::collection::btree_map("[a-z]{1,3}", inner, 0..4)
+                    .prop_map(|table| Value::Table(table.into_iter().collect())),
+            ]
+        })
+    }
+
+    proptest! {
+        /// Whatever is written as in TOML comes back, in its place.
+        #[test]
+        fn values_come_back(values in prop::collection::vec(value(), 1..5)) {
+            let list: Vec<String> = values.iter().map(Value::to_string).collect();
+            let variation: Variation = format!("a.b={}", list.join(",")).parse().unwrap();
+            let found: Vec<Value> = variation.values.into_iter().map(|set| set.value).collect();
+            prop_assert_eq!(found, values);
+        }
+
+        /// Whatever is typed, either it is refused, or nothing of it is lost.
+        #[test]
+        fn nothing_is_lost(list in "[a1,\\[\\]{}'\"\\\\ α]{0,16}") {
+            if let Ok(values) = split(&list) {
+                let bare = |text: &str| text.replace([' ', ','], "");
+                prop_assert_eq!(bare(&values.concat()), bare(&list));
+                prop_assert!(values.iter().all(|value| !value.is_empty()));
+            }
+        }
+    }
+}
