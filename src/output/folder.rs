@@ -177,6 +177,9 @@ impl RunFolder {
         if !path.is_dir() {
             return none("there is no such folder");
         }
+        if path.join("sweep.toml").is_file() {
+            return none("it holds a sweep; the same `grainfall sweep` command goes on with it");
+        }
         if !path.join("scenario.toml").is_file() {
             return none("there is no scenario.toml in it; begin with `grainfall run`");
         }

@@ -9,6 +9,7 @@ use toml::{Table, Value};
 use crate::output::{FolderError, RunFolder, lock, names_in, write_atomically};
 use crate::program::error::ProgramError;
 use crate::program::sweep::error::SweepError;
+use crate::program::sweep::names::shortened;
 
 const SWEEP: &str = "sweep.toml";
 const RUNS: &str = "runs.csv";
@@ -199,7 +200,7 @@ fn of_tables(list: &[Value]) -> bool {
 
 fn line(at: &str, there: Option<&Value>, here: Option<&Value>) -> String {
     let shown = |value: Option<&Value>| match value {
-        Some(value) => format!("{:.100}", value.to_string()),
+        Some(value) => shortened(&value.to_string(), 100),
         None => "nothing".to_owned(),
     };
     format!("{at}: {} there, {} here", shown(there), shown(here))

@@ -22,6 +22,14 @@ pub(super) fn plain(value: &Value) -> String {
     }
 }
 
+/// At most so many characters of a text.
+pub(super) fn shortened(text: &str, most: usize) -> String {
+    match text.char_indices().nth(most) {
+        Some((at, _)) => format!("{}…", &text[..at]),
+        None => text.to_owned(),
+    }
+}
+
 /// For each variation the names of its values, such as `sleep_speed=0.05`;
 /// `None` if it has only one value. They depend on nothing but the values.
 pub(super) fn names_of(variations: &[Variation]) -> Vec<Option<Vec<String>>> {

@@ -6,6 +6,7 @@ use std::path::Path;
 use crate::output::{StoppedBy, Summary};
 use crate::program::error::ProgramError;
 use crate::program::estimate::{Estimate, significant};
+use crate::program::sweep::names::shortened;
 use crate::program::sweep::plan::Plan;
 use crate::program::table::table;
 
@@ -35,10 +36,7 @@ impl Outcome {
     /// What is known after an attempt to carry it out.
     pub(super) fn after(folder: &Path, done: Result<(), ProgramError>) -> Self {
         Outcome {
-            failure: done.err().map(|error| {
-                let message = error.to_string().replace('\n', " ");
-                (error.exit_code(), message)
-            }),
+            failure: done.err().map(|error| (error.exit_code(), message(&error))),
             ..Outcome::read(folder)
         }
     }
@@ -89,6 +87,15 @@ impl Outcome {
             Some((_, message)) => message,
             None => error().unwrap_or_default(),
         }
+    }
+}
+
+/// On one line, without the line of a scenario that it points at.
+fn message(error: &ProgramError) -> String {
+    let text = error.to_string();
+    match error {
+        ProgramError::Scenario(_) => text.lines().take(1).collect(),
+        _ => text.lines().map(str::trim).collect::<Vec<_>>().join(" "),
     }
 }
 
@@ -232,7 +239,7 @@ pub(super) fn for_people(plan: &Plan, outcomes: &[Outcome]) -> String {
         let finished = summaries(runs);
         let mut row: Vec<String> = varied
             .iter()
-            .map(|&number| shortened(&values[number]))
+            .map(|&number| shortened(&values[number], 40))
             .collect();
         row.push(format!("{} of {seeds}", finished.len()));
         row.extend(figures.iter().map(|(figure, _)| {
@@ -279,12 +286,5 @@ fn cell(samples: &[f64], shown: &Shown) -> String {
         }
         Shown::Largest(_) => format!("{:.1e}", samples.iter().copied().fold(0.0, f64::max)),
         Shown::Sum(_) => format!("{:.1}", samples.iter().sum::<f64>()),
-    }
-}
-
-fn shortened(text: &str) -> String {
-    match text.char_indices().nth(40) {
-        Some((at, _)) => format!("{}…", &text[..at]),
-        None => text.to_owned(),
     }
 }

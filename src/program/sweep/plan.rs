@@ -14,7 +14,7 @@ use crate::program::run::{seed_is, until};
 use crate::program::show::check_grains;
 use crate::program::sweep::MOST_RUNS;
 use crate::program::sweep::error::SweepError;
-use crate::program::sweep::names::{names_of, plain, unique};
+use crate::program::sweep::names::{names_of, plain, shortened, unique};
 use crate::program::sweep::values::Variation;
 use crate::scenario::{Dimension, Origin, Path, Scenario, read_text};
 
@@ -233,7 +233,7 @@ impl Plan {
         let values = self.variations.iter().zip(self.values_of(combination));
         let values: Vec<String> = values
             .filter(|(variation, _)| variation.values.len() > 1)
-            .map(|(variation, value)| format!("{} = {value:.80}", variation.path))
+            .map(|(variation, value)| format!("{} = {}", variation.path, shortened(&value, 80)))
             .collect();
         values.join(", ")
     }
