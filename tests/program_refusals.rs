@@ -451,7 +451,7 @@ fn sweeps_are_refused_as_a_whole() {
         (
             &["--set=parameters.restitution=0.5,1.5", speeds],
             &[
-                "--set parameters.restitution=1.5: parameters.restitution is 1.5; 0 to 1",
+                "--set parameters.restitution=1.5: parameters.restitution is 1.5; a number from 0 to 1",
                 "where parameters.restitution = 1.5, parameters.sleep_speed = 0.1",
             ],
         ),

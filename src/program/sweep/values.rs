@@ -113,13 +113,15 @@ fn length_of_first(list: &str) -> Result<usize, char> {
 /// How many bytes a quoted text at the beginning of `text` has, with its quotes:
 /// one, or three as TOML has them, too. `None` if it does not end.
 fn length_of_text(text: &str, quote: char) -> Option<usize> {
-    let three: String = [quote; 3].iter().collect();
-    let mark = if text.starts_with(&three) { 3 } else { 1 };
+    let quotes = |at: usize| text[at..].chars().take_while(|next| *next == quote).count();
+    let mark = if quotes(0) >= 3 { 3 } else { 1 };
     let mut at = mark;
     loop {
         let letter = text[at..].chars().next()?;
-        if letter == quote && (mark == 1 || text[at..].starts_with(&three)) {
-            return Some(at + mark);
+        let here = quotes(at);
+        if here >= mark {
+            // Up to two more, before the last three, belong to the text.
+            return Some(at + if mark == 3 { here.min(5) } else { 1 });
         }
         at += letter.len_utf8();
         if letter == '\\' && quote == '"' {
@@ -153,6 +155,8 @@ mod tests {
             ("'a,\\',b", &["'a,\\'", "b"]),
             ("\"a\\\",b\",c", &["\"a\\\",b\"", "c"]),
             ("\"\"\"a\",b\"\"\",c", &["\"\"\"a\",b\"\"\"", "c"]),
+            ("[\"\"\"\n,\"\"\"\"],c", &["[\"\"\"\n,\"\"\"\"]", "c"]),
+            ("\"\"\"\"\"\",c", &["\"\"\"\"\"\"", "c"]),
             ("[\"]\",1],2", &["[\"]\",1]", "2"]),
             ("it's,fine", &["it's", "fine"]),
             ("\"\"", &["\"\""]),
