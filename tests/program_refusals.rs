@@ -447,7 +447,7 @@ fn sweeps_are_refused_as_a_whole() {
     let thousand: Vec<String> = (0..1000).map(|n| format!("{n}e-9")).collect();
     let thousand = format!("--set=parameters.sleep_speed={}", thousand.join(","));
     let speeds = "--set=parameters.sleep_speed=0.1,0.2";
-    let cases: [(&[&str], &[&str]); 16] = [
+    let cases: [(&[&str], &[&str]); 17] = [
         (
             &["--set=parameters.restitution=0.5,1.5", speeds],
             &[
@@ -495,7 +495,14 @@ fn sweeps_are_refused_as_a_whole() {
             &["--set=stop.time=1,2", "--until=3"],
             &["stop.time is given by", "--until 3"],
         ),
-        (&["--set=seed=1,2"], &["--seeds N", "--seed N"]),
+        (
+            &["--set=stop.time,seed,stop.time=1,2"],
+            &["--seeds N", "--seed N"],
+        ),
+        (
+            &["--set=stop.time,title,stop.time=1,2"],
+            &["stop.time is given by"],
+        ),
         (&["--seeds=0"], &["0", "1..=100000"]),
         (&["--threads=0"], &["1..=4096"]),
         (&["--seeds=2", "--seed", &most], &["beyond the largest"]),

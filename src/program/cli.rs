@@ -62,14 +62,15 @@ const SWEEP_HELP: &str = "\
 Examples:
   grainfall sweep deposition --set parameters.sleep_speed=0.02,0.05,0.1 --seeds 4
   grainfall sweep mine.toml --set parameters.wake_speed=0.1,never --threads 2
+  grainfall sweep deposition --set parameters.sleep_speed,parameters.wake_speed=0.05,0.1
   grainfall sweep arch --set 'gravity=[0, -1],[0.1, -1]' --out runs/tilted
   grainfall sweep arch --set 'title=\"one, two\",three' --until 5
 
 Commas between values separate them. A value that itself holds commas is written
 as in TOML: a list in [ ], a table in { }, a text in quotes; keep the shell from
-reading those by quotes around the whole. Every value of each --set is combined
-with every value of the others and with every seed; the first --set changes
-slowest, the seed fastest.
+reading those by quotes around the whole. Commas between paths give them the same
+values. Every value of each --set is combined with every value of the others and
+with every seed; the first --set changes slowest, the seed fastest.
 
 Each run goes to a folder of its own, such as sleep_speed=0.05_seed=2, and is,
 but for timings, what `grainfall run` makes of the same values and seed: it does

@@ -293,6 +293,25 @@ fn another_sweep_into_the_same_folder_is_refused() {
     let first = bounce(&["--set=parameters.sleep_speed=0.01,0.02", "--seeds=2"]);
     expect(place.path(), 0, &first);
     let here = place.path().join("here");
+    let both = [
+        "sweep",
+        "mine.toml",
+        "--set=parameters.sleep_speed,parameters.wake_speed=0.01,0.02",
+        "--out=both",
+    ];
+    let said = expect(place.path(), 0, &both);
+    assert!(said.contains("2 of 2 runs finished"), "{said}");
+    for path in ["parameters.sleep_speed", "parameters.wake_speed"] {
+        assert_eq!(column(&place.path().join("both"), path), ["0.01", "0.02"]);
+    }
+    let run = place
+        .path()
+        .join("both/sleep_speed=0.02_seed=1/scenario.toml");
+    let text = fs::read_to_string(run).unwrap();
+    assert!(
+        text.contains("sleep_speed = 0.02\nwake_speed = 0.02\n"),
+        "{text}"
+    );
     let before = content(&here.join("sleep_speed=0.01_seed=2"));
     for (other, wanted) in [
         (

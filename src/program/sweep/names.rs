@@ -31,25 +31,25 @@ pub(super) fn shortened(text: &str, most: usize) -> String {
 }
 
 /// For each variation the names of its values, such as `sleep_speed=0.05`;
-/// `None` if it has only one value. They depend on nothing but the values.
+/// `None` if it has only one value. Of several paths the first counts. They depend on nothing but the values.
 pub(super) fn names_of(variations: &[Variation]) -> Vec<Option<Vec<String>>> {
-    let varied = |variation: &&Variation| variation.values.len() > 1;
+    let varied = |variation: &&Variation| variation.is_varied();
     let mut short = BTreeMap::new();
     for variation in variations.iter().filter(varied) {
         *short
-            .entry(key(&variation.path, true).to_lowercase())
+            .entry(key(&variation.paths[0], true).to_lowercase())
             .or_insert(0) += 1;
     }
     let of = |variation: &Variation| {
-        let name = key(&variation.path, true);
+        let name = key(&variation.paths[0], true);
         // The seed has this name.
         let alone = short.get(&name.to_lowercase()) == Some(&1) && name != "seed";
         let name = if alone {
             name
         } else {
-            key(&variation.path, false)
+            key(&variation.paths[0], false)
         };
-        let values: Vec<&Value> = variation.values.iter().map(|set| &set.value).collect();
+        let values: Vec<&Value> = variation.values().collect();
         let words = words(&values).into_iter();
         words.map(|word| format!("{name}={word}")).collect()
     };
@@ -152,7 +152,7 @@ mod tests {
             [["sleep_speed=0.05", "sleep_speed=1e-7", "sleep_speed=never"]]
         );
         assert_eq!(
-            named(&["gravity=none,1", "grains[0].position[1]=2,3"]),
+            named(&["gravity,title=none,1", "grains[0].position[1]=2,3"]),
             [
                 ["gravity=none", "gravity=1"],
                 ["position.1=2", "position.1=3"]

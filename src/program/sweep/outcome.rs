@@ -178,7 +178,8 @@ pub(super) fn runs_csv(plan: &Plan, outcomes: &[Outcome]) -> Result<Vec<u8>, Pro
     let failed = |error: csv::Error| ProgramError::io("runs.csv")(error.into());
     let mut rows = csv::Writer::from_writer(Vec::new());
     let mut head = vec!["folder".to_owned()];
-    head.extend(plan.variations.iter().map(|set| set.path.to_string()));
+    let paths = plan.variations.iter().flat_map(|set| &set.paths);
+    head.extend(paths.map(ToString::to_string));
     head.extend(["seed", "ended"].map(str::to_owned));
     head.extend(FIGURES.iter().map(|figure| figure.name.to_owned()));
     head.extend(["trajectory_hash", "error"].map(str::to_owned));
@@ -187,7 +188,9 @@ pub(super) fn runs_csv(plan: &Plan, outcomes: &[Outcome]) -> Result<Vec<u8>, Pro
         let (combination, seed) = plan.combination_of(run);
         let summary = outcome.summary.as_ref();
         let mut row = vec![plan.folder_of(run)];
-        row.extend(plan.values_of(combination));
+        for (set, value) in plan.variations.iter().zip(plan.values_of(combination)) {
+            row.extend(set.paths.iter().map(|_| value.clone()));
+        }
         row.extend([seed.to_string(), outcome.ended().to_owned()]);
         row.extend(FIGURES.iter().map(|figure| {
             let value = summary.and_then(figure.of);
@@ -208,7 +211,7 @@ pub(super) fn runs_csv(plan: &Plan, outcomes: &[Outcome]) -> Result<Vec<u8>, Pro
 pub(super) fn for_people(plan: &Plan, outcomes: &[Outcome]) -> String {
     let seeds = plan.seeds as usize;
     let varied: Vec<usize> = (0..plan.variations.len())
-        .filter(|&number| plan.variations[number].values.len() > 1)
+        .filter(|&number| plan.variations[number].is_varied())
         .collect();
     // Only what some run has.
     let summaries = |runs: &[Outcome]| -> Vec<Summary> {
@@ -229,7 +232,7 @@ pub(super) fn for_people(plan: &Plan, outcomes: &[Outcome]) -> String {
 
     let mut head: Vec<String> = varied
         .iter()
-        .map(|&number| plan.variations[number].path.to_string())
+        .map(|&number| plan.variations[number].title())
         .collect();
     head.push("finished".to_owned());
     head.extend(figures.iter().map(|(_, name)| (*name).to_owned()));

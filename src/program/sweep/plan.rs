@@ -138,9 +138,9 @@ impl Plan {
         sweep.insert("first_seed".to_owned(), number(self.first_seed));
         sweep.insert("seeds".to_owned(), number(self.seeds));
         let set = self.variations.iter().map(|variation| {
-            let values = variation.values.iter().map(|set| set.value.clone());
+            let values = variation.values().cloned();
             let mut table = Table::new();
-            table.insert("path".to_owned(), variation.path.to_string().into());
+            table.insert("path".to_owned(), variation.title().into());
             table.insert("values".to_owned(), Value::Array(values.collect()));
             Value::Table(table)
         });
@@ -195,7 +195,7 @@ impl Plan {
         let indices = self.indices(combination);
         let values = self.variations.iter().zip(indices);
         origin.assignments = values
-            .map(|(variation, index)| variation.values[index].clone())
+            .flat_map(|(variation, index)| variation.assignments(index).to_vec())
             .chain(seed.map(seed_is))
             .collect();
         origin
@@ -209,7 +209,7 @@ impl Plan {
             .iter()
             .rev()
             .map(|variation| {
-                let count = variation.values.len();
+                let count = variation.count();
                 let index = left % count;
                 left /= count;
                 index
@@ -224,7 +224,7 @@ impl Plan {
         let indices = self.indices(combination);
         let values = self.variations.iter().zip(indices);
         values
-            .map(|(variation, index)| plain(&variation.values[index].value))
+            .map(|(variation, index)| plain(&variation.assignments(index)[0].value))
             .collect()
     }
 
@@ -232,8 +232,8 @@ impl Plan {
     fn values_text(&self, combination: usize) -> String {
         let values = self.variations.iter().zip(self.values_of(combination));
         let values: Vec<String> = values
-            .filter(|(variation, _)| variation.values.len() > 1)
-            .map(|(variation, value)| format!("{} = {}", variation.path, shortened(&value, 80)))
+            .filter(|(variation, _)| variation.is_varied())
+            .map(|(variation, value)| format!("{} = {}", variation.title(), shortened(&value, 80)))
             .collect();
         values.join(", ")
     }
@@ -242,17 +242,20 @@ impl Plan {
 /// Refuses seeds among the values, and values that are given twice over.
 fn check_paths(variations: &[Variation]) -> Result<(), SweepError> {
     let seed = Path::root().key("seed");
-    for (number, variation) in variations.iter().enumerate() {
-        if variation.path.is_within(&seed) {
-            return Err(SweepError::Seed);
-        }
-        let before = &variations[..number];
-        if let Some(other) = before.iter().find(|other| other.path == variation.path) {
-            return Err(SweepError::Twice {
-                path: variation.path.to_string(),
-                one: other.text.clone(),
-                other: variation.text.clone(),
-            });
+    let mut given: Vec<(&Path, &Variation)> = Vec::new();
+    for variation in variations {
+        for path in &variation.paths {
+            if path.is_within(&seed) {
+                return Err(SweepError::Seed);
+            }
+            if let Some((_, other)) = given.iter().find(|(other, _)| *other == path) {
+                return Err(SweepError::Twice {
+                    path: path.to_string(),
+                    one: other.text.clone(),
+                    other: variation.text.clone(),
+                });
+            }
+            given.push((path, variation));
         }
     }
     Ok(())
@@ -261,7 +264,7 @@ fn check_paths(variations: &[Variation]) -> Result<(), SweepError> {
 /// How many combinations there are, if that many can be run.
 fn count(variations: &[Variation], seeds: u64) -> Result<usize, SweepError> {
     let combinations = variations.iter().fold(1_u128, |product, variation| {
-        product.saturating_mul(variation.values.len() as u128)
+        product.saturating_mul(variation.count() as u128)
     });
     if combinations.saturating_mul(u128::from(seeds)) > u128::from(MOST_RUNS) {
         return Err(SweepError::TooMany {

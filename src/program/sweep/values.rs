@@ -1,15 +1,19 @@
-//! `--set path=value,value,…`.
+//! `--set path=value,value,…`, also `--set path,path=value,value,…`.
 
 use std::str::FromStr;
 
+use toml::Value;
+
 use crate::scenario::{Assignment, Path};
 
-/// A value of a scenario, and all that it is to be.
+/// A value of a scenario, or several that are always the same, and all that it
+/// is to be.
 #[derive(Clone, Debug)]
 pub(in crate::program) struct Variation {
-    pub(super) path: Path,
     /// At least one.
-    pub(super) values: Vec<Assignment>,
+    pub(super) paths: Vec<Path>,
+    /// At least one; each with an assignment for each path.
+    values: Vec<Vec<Assignment>>,
     /// What was typed.
     pub(super) text: String,
 }
@@ -18,10 +22,36 @@ impl Variation {
     /// One value for all runs.
     pub(super) fn fixed(value: Assignment) -> Self {
         Variation {
-            path: value.path.clone(),
+            paths: vec![value.path.clone()],
             text: value.text.clone(),
-            values: vec![value],
+            values: vec![vec![value]],
         }
+    }
+
+    /// How many values there are.
+    pub(super) fn count(&self) -> usize {
+        self.values.len()
+    }
+
+    /// Whether there is more than one value.
+    pub(super) fn is_varied(&self) -> bool {
+        self.values.len() > 1
+    }
+
+    /// What a value is written into the scenario by.
+    pub(super) fn assignments(&self, value: usize) -> &[Assignment] {
+        &self.values[value]
+    }
+
+    /// All values.
+    pub(super) fn values(&self) -> impl Iterator<Item = &Value> {
+        self.values.iter().map(|sets| &sets[0].value)
+    }
+
+    /// The paths as they are typed.
+    pub(super) fn title(&self) -> String {
+        let paths: Vec<String> = self.paths.iter().map(Path::to_string).collect();
+        paths.join(",")
     }
 }
 
@@ -44,17 +74,23 @@ impl FromStr for Variation {
     type Err = ParseVariationError;
 
     fn from_str(text: &str) -> Result<Self, Self::Err> {
-        let (path, list) = text
+        let (paths, list) = text
             .split_once('=')
             .ok_or_else(|| ParseVariationError::NoValue(text.to_owned()))?;
+        let of = |value: &str| {
+            let sets = paths
+                .split(',')
+                .map(|path| format!("{path}={value}").parse());
+            sets.collect::<Result<Vec<Assignment>, _>>()
+        };
         let values = split(list)?
             .into_iter()
-            .map(|value| format!("{path}={value}").parse())
-            .collect::<Result<Vec<Assignment>, _>>()
+            .map(of)
+            .collect::<Result<Vec<_>, _>>()
             .map_err(|error| ParseVariationError::Assignment(error.to_string()))?;
-        let path = values.first().map(|value| value.path.clone());
+        let paths = values.iter().take(1).flatten().map(|set| set.path.clone());
         Ok(Variation {
-            path: path.unwrap_or_default(),
+            paths: paths.collect(),
             values,
             text: format!("--set {text}"),
         })
@@ -133,7 +169,6 @@ fn length_of_text(text: &str, quote: char) -> Option<usize> {
 #[cfg(test)]
 mod tests {
     use proptest::prelude::*;
-    use toml::Value;
 
     use super::*;
 
@@ -168,6 +203,17 @@ mod tests {
     }
 
     #[test]
+    fn several_paths_have_the_same_values() {
+        let both: Variation = "a.b, c[0]=1,[2, 3]".parse().unwrap();
+        assert_eq!((both.title().as_str(), both.count()), ("a.b,c[0]", 2));
+        let sets: Vec<String> = (0..2)
+            .flat_map(|value| both.assignments(value))
+            .map(|set| format!("{}={}", set.path, set.value))
+            .collect();
+        assert_eq!(sets, ["a.b=1", "c[0]=1", "a.b=[2, 3]", "c[0]=[2, 3]"]);
+    }
+
+    #[test]
     fn what_is_no_list_is_refused() {
         for (text, wanted) in [
             ("parameters.sleep_speed", "has no `=`"),
@@ -181,6 +227,7 @@ mod tests {
             ("a={b=[1}", "never closed"),
             ("a=\"b,c", "the \" that opens value 1"),
             ("a..b=1", "no path"),
+            ("a,=1", "no path"),
         ] {
             let error = text.parse::<Variation>().unwrap_err();
             assert!(error.to_string().contains(wanted), "{text}: {error}");
@@ -212,7 +259,7 @@ mod tests {
         fn values_come_back(values in prop::collection::vec(value(), 1..5)) {
             let list: Vec<String> = values.iter().map(Value::to_string).collect();
             let variation: Variation = format!("a.b={}", list.join(",")).parse().unwrap();
-            let found: Vec<Value> = variation.values.into_iter().map(|set| set.value).collect();
+            let found: Vec<Value> = variation.values().cloned().collect();
             prop_assert_eq!(found, values);
         }
 
