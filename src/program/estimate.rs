@@ -42,7 +42,7 @@ impl Estimate {
     }
 }
 
-/// Six digits, and whole numbers whole.
+/// Six digits.
 pub(super) fn significant(value: f64) -> String {
     let places = if value == 0.0 {
         0.0

@@ -118,7 +118,7 @@ fn words(values: &[&Value]) -> Vec<String> {
         }
         let parts = text.split(|letter: char| !letter.is_ascii() || !is_safe(letter as u8));
         let parts: Vec<&str> = parts.filter(|part| !part.is_empty()).collect();
-        let mut left = parts.join("-");
+        let mut left = parts.join("_");
         left.truncate(LONGEST_VALUE - 16);
         format!(
             "{left}~{:08x}",
@@ -178,11 +178,12 @@ mod tests {
     fn what_is_no_name_of_a_file_is_told_apart_by_fingerprints() {
         let names = named(&["grains.0.file=a/b.xyz,a-b.xyz,A-b.xyz,../a,'',\"1\",1"]).concat();
         assert!(all_different(&names), "{names:?}");
-        assert!(names[0].starts_with("file=a-b.xyz~"), "{names:?}");
+        assert!(names[0].starts_with("file=a_b.xyz~"), "{names:?}");
         for name in &names {
             let word = name.strip_prefix("file=").unwrap();
             assert!(
-                word.bytes().all(|letter| is_safe(letter) || letter == b'~'),
+                word.bytes()
+                    .all(|letter| is_safe(letter) || b"_~".contains(&letter)),
                 "{word}"
             );
         }

@@ -247,7 +247,7 @@ pub(super) fn for_people(plan: &Plan, outcomes: &[Outcome]) -> String {
         row.push(format!("{} of {seeds}", finished.len()));
         row.extend(figures.iter().map(|(figure, _)| {
             let samples: Vec<f64> = finished.iter().filter_map(figure.of).collect();
-            cell(&samples, &figure.shown)
+            cell(&samples, figure)
         }));
         rows.push(row);
     }
@@ -276,15 +276,18 @@ pub(super) fn failures(plan: &Plan, outcomes: &[Outcome]) -> String {
     text
 }
 
-fn cell(samples: &[f64], shown: &Shown) -> String {
+fn cell(samples: &[f64], figure: &Figure) -> String {
     if samples.is_empty() {
         return "–".to_owned();
     }
-    match shown {
+    match figure.shown {
         Shown::No => String::new(),
         Shown::Mean(_) => {
             let estimate = Estimate::of(samples);
-            let alone = || significant(estimate.mean);
+            let alone = || match figure.whole {
+                true => format!("{:.0}", estimate.mean),
+                false => significant(estimate.mean),
+            };
             estimate.with_error().unwrap_or_else(alone)
         }
         Shown::Largest(_) => format!("{:.1e}", samples.iter().copied().fold(0.0, f64::max)),
