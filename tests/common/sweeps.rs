@@ -211,12 +211,14 @@ fn signals_end_all_runs_of_a_sweep() {
         wait_for(&mut running, || {
             fs::metadata(&first).is_ok_and(|about| about.len() > 0)
         });
-        // It is being written to.
+        // It is being written to, and waits for this.
+        kill(&running, "STOP");
         let said = expect(place.path(), 2, &began);
         assert!(said.contains("another grainfall process"), "{said}");
         let said = expect(place.path(), 2, &[&began[..], &["--force"]].concat());
         assert!(said.contains("another grainfall process"), "{said}");
         kill(&running, signal);
+        kill(&running, "CONT");
         assert_eq!(running.wait().unwrap().code(), Some(code));
         let ended = column(&folder, "ended");
         let interrupted = ended.iter().filter(|ended| *ended == "interrupted");
