@@ -12,6 +12,7 @@ pub use audit::{AuditReport, MissedContact};
 pub use checkpoint::{Checkpoint, CheckpointError};
 pub use events::EventLog;
 pub use folder::{FolderError, RunFolder, write_atomically};
+pub(crate) use folder::{lock, names_in};
 pub use series::{Series, SeriesRow};
 pub use summary::{
     CollapseReport, EnergyReport, EventCounts, FractionReport, ParticleCounts, StoppedBy, Summary,

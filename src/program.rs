@@ -7,6 +7,7 @@ mod cli;
 mod draw;
 mod drive;
 mod error;
+mod estimate;
 mod load;
 mod means;
 mod processor;
@@ -15,9 +16,12 @@ mod resume;
 mod run;
 mod show;
 mod signals;
+mod sweep;
+mod table;
 mod validate;
 
 pub use error::ProgramError;
+pub use sweep::SweepError;
 
 use std::io::{self, Write};
 use std::process::ExitCode;
@@ -32,6 +36,7 @@ pub fn main() -> ExitCode {
     let done = match Cli::parse().command {
         Command::Run(arguments) => run::run(&arguments),
         Command::Resume(arguments) => resume::resume(&arguments),
+        Command::Sweep(arguments) => sweep::sweep(&arguments),
         Command::Presets => show::presets(),
         Command::Preset { name } => show::preset(&name),
         Command::Check(arguments) => show::check(&arguments),

@@ -438,6 +438,95 @@ fn crowds_are_refused_quickly() {
     }
 }
 
+/// Every combination of a sweep is looked at before any is run.
+#[test]
+fn sweeps_are_refused_as_a_whole() {
+    let place = tempfile::tempdir().unwrap();
+    std::fs::write(place.path().join("good.toml"), GOOD).unwrap();
+    let most = (i64::MAX as u64).to_string();
+    let thousand: Vec<String> = (0..1000).map(|n| format!("{n}e-9")).collect();
+    let thousand = format!("--set=parameters.sleep_speed={}", thousand.join(","));
+    let speeds = "--set=parameters.sleep_speed=0.1,0.2";
+    let cases: [(&[&str], &[&str]); 17] = [
+        (
+            &["--set=parameters.restitution=0.5,1.5", speeds],
+            &[
+                "--set parameters.restitution=1.5: parameters.restitution is 1.5; a number from 0 to 1",
+                "where parameters.restitution = 1.5, parameters.sleep_speed = 0.1",
+            ],
+        ),
+        (
+            &["--set=parameters.restituion=0.5,0.6"],
+            &["did you mean `restitution`?", "where"],
+        ),
+        // Two values that are good each by itself.
+        (
+            &[
+                "--set=grains.0.position=[0,1],[3,3]",
+                "--set=grains.1.position=[3,1],[0,1]",
+            ],
+            &[
+                "grains 0 and 1 overlap",
+                "where grains[0].position = [0, 1], grains[1].position = [0, 1]",
+            ],
+        ),
+        (
+            &["--set=parameters.restitution=0.5,,0.6"],
+            &["value 2 of the list is empty"],
+        ),
+        (
+            &["--set=gravity=[0,1"],
+            &["the [ that opens value 1 of the list is never closed"],
+        ),
+        (&["--set=gravity"], &["has no `=`"]),
+        (
+            &["--set=parameters.sleep_speed=0.1,0.2,1e-1"],
+            &["parameters.sleep_speed = 0.1 and parameters.sleep_speed = 0.1 are the same"],
+        ),
+        (
+            &["--set=parameters.sleep_speed=1,1.0"],
+            &["parameters.sleep_speed = 1 and parameters.sleep_speed = 1.0 are the same"],
+        ),
+        (
+            &[speeds, "--set=parameters.sleep_speed=0.3"],
+            &["give all its values at once"],
+        ),
+        (
+            &["--set=stop.time=1,2", "--until=3"],
+            &["stop.time is given by", "--until 3"],
+        ),
+        (
+            &["--set=stop.time,seed,stop.time=1,2"],
+            &["--seeds N", "--seed N"],
+        ),
+        (
+            &["--set=stop.time,title,stop.time=1,2"],
+            &["stop.time is given by"],
+        ),
+        (&["--seeds=0"], &["0", "1..=100000"]),
+        (&["--threads=0"], &["1..=4096"]),
+        (&["--seeds=2", "--seed", &most], &["beyond the largest"]),
+        (
+            &["--seeds=101", &thousand],
+            &["1000 combinations", "101 seeds", "at most 100000"],
+        ),
+        (&["--checkpoint-every=-1"], &["1e-9"]),
+    ];
+    for (arguments, wanted) in cases {
+        let all = [&["sweep", "good.toml"], arguments].concat();
+        let output = grainfall(place.path(), &all);
+        let said = message(&output);
+        assert_eq!(output.status.code(), Some(2), "{arguments:?}\n{said}");
+        for part in wanted {
+            assert!(said.contains(part), "{arguments:?}\n{said}\nlacks {part}");
+        }
+    }
+    let output = grainfall(place.path(), &["sweep", "depositoin"]);
+    assert!(message(&output).contains("did you mean `deposition`?"));
+    let left = std::fs::read_dir(place.path()).unwrap().count();
+    assert_eq!(left, 1, "something was written");
+}
+
 #[test]
 fn subjects_of_validation_are_told_apart() {
     let folder = tempfile::tempdir().unwrap();

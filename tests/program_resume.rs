@@ -2,6 +2,9 @@
 //! never interrupted.
 #![cfg(all(feature = "program", unix))]
 
+#[path = "common/sweeps.rs"]
+mod sweeps;
+
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};

@@ -177,6 +177,9 @@ impl RunFolder {
         if !path.is_dir() {
             return none("there is no such folder");
         }
+        if path.join("sweep.toml").is_file() {
+            return none("it holds a sweep; the same `grainfall sweep` command goes on with it");
+        }
         if !path.join("scenario.toml").is_file() {
             return none("there is no scenario.toml in it; begin with `grainfall run`");
         }
@@ -194,18 +197,7 @@ impl RunFolder {
     ///
     /// When another process is at it already.
     pub fn lock(&self) -> Result<File, FolderError> {
-        // Where a folder can't be opened, a file that is never replaced will do.
-        let opened = File::open(&self.path).or_else(|_| File::open(self.file("scenario.toml")));
-        let opened = opened.map_err(|source| FolderError::Io {
-            file: self.path.display().to_string(),
-            source,
-        })?;
-        match opened.try_lock() {
-            Err(TryLockError::WouldBlock) => Err(FolderError::InUse {
-                folder: self.path.display().to_string(),
-            }),
-            Ok(()) | Err(TryLockError::Error(_)) => Ok(opened),
-        }
+        lock(&self.path, "scenario.toml")
     }
 
     /// Takes a run that has come to nothing away again, and the folders that
@@ -321,13 +313,34 @@ impl RunFolder {
     }
 }
 
+/// Keeps other processes from writing to a folder as long as the file stays
+/// open, where the file system can do that.
+///
+/// # Errors
+///
+/// When another process is at it already.
+pub(crate) fn lock(folder: &Path, instead: &str) -> Result<File, FolderError> {
+    // Where a folder can't be opened, a file that is never replaced will do.
+    let opened = File::open(folder).or_else(|_| File::open(folder.join(instead)));
+    let opened = opened.map_err(|source| FolderError::Io {
+        file: folder.display().to_string(),
+        source,
+    })?;
+    match opened.try_lock() {
+        Err(TryLockError::WouldBlock) => Err(FolderError::InUse {
+            folder: folder.display().to_string(),
+        }),
+        Ok(()) | Err(TryLockError::Error(_)) => Ok(opened),
+    }
+}
+
 /// True for the names of files that were never finished.
 fn is_part(name: &str) -> bool {
     name.ends_with(".part") && is_of_a_run(name)
 }
 
 /// The names of everything in a folder, in order.
-fn names_in(path: &Path) -> io::Result<Vec<String>> {
+pub(crate) fn names_in(path: &Path) -> io::Result<Vec<String>> {
     let mut names = fs::read_dir(path)?
         .map(|entry| Ok(entry?.file_name().to_string_lossy().into_owned()))
         .collect::<io::Result<Vec<String>>>()?;

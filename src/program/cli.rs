@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand};
 
+use crate::program::sweep::{MOST_RUNS, Variation};
 use crate::scenario::Assignment;
 
 const EXAMPLES: &str = "\
@@ -13,6 +14,8 @@ Examples:
   grainfall preset arch > mine.toml             a scenario to edit
   grainfall run mine.toml --until 10
   grainfall resume runs/deposition-1            go on after an interruption
+  grainfall sweep deposition --set parameters.sleep_speed=0.02,0.05,0.1 --seeds 4
+                                                many runs, on all cores
   grainfall draw runs/deposition-1 --time 50
   grainfall validate --quick                    known physics, in a minute
 
@@ -54,6 +57,37 @@ checkpoint but the first starts anew. A run that is finished is left alone.
 
 Exit codes are those of `grainfall run`; 2 also if there is no checkpoint that
 is whole and of this version.";
+
+const SWEEP_HELP: &str = "\
+Examples:
+  grainfall sweep deposition --set parameters.sleep_speed=0.02,0.05,0.1 --seeds 4
+  grainfall sweep mine.toml --set parameters.wake_speed=0.1,never --threads 2
+  grainfall sweep deposition --set parameters.sleep_speed,parameters.wake_speed=0.05,0.1
+  grainfall sweep arch --set 'gravity=[0, -1],[0.1, -1]' --out runs/tilted
+  grainfall sweep arch --set 'title=\"one, two\",three' --until 5
+
+Commas between values separate them. A value that itself holds commas is written
+as in TOML: a list in [ ], a table in { }, a text in quotes; keep the shell from
+reading those by quotes around the whole. Commas between paths give them the same
+values. Every value of each --set is combined with every value of the others and
+with every seed; the first --set changes slowest, the seed fastest.
+
+Each run goes to a folder of its own, such as sleep_speed=0.05_seed=2, and is,
+but for timings, what `grainfall run` makes of the same values and seed: it does
+not depend on the number of threads. The folder of the sweep also holds
+  sweep.toml   what the sweep is of
+  runs.csv     a row for each run: its values, how it ended, its main figures
+
+The same command again goes on after an interruption, even by kill -9: runs that
+are finished are left alone, those that were interrupted go on from their
+checkpoints. Ctrl-C ends all runs with their states saved (exit code 130).
+
+Exit code 3: a run has stopped early (a collapse, an error); the others were
+carried on with, and runs.csv says which it was.";
+
+const SWEEP_SET_HELP: &str = "\
+Values to be tried in place of the scenario's, such as
+parameters.sleep_speed=0.05,0.1 or grains.1.rain.count=1500; again and again";
 
 const CHECKPOINT_HELP: &str = "\
 Write a checkpoint at the multiples of this simulated time, in √(d/g); 0: only
@@ -106,6 +140,8 @@ pub(super) enum Command {
     Run(RunArguments),
     /// Go on with a run that was interrupted
     Resume(ResumeArguments),
+    /// Run all combinations of some values, with several seeds, on all cores
+    Sweep(SweepArguments),
     /// List the presets
     Presets,
     /// Print the scenario of a preset, to edit
@@ -164,6 +200,38 @@ pub(super) struct ResumeArguments {
     #[arg(long, value_name = "K", value_parser = events, allow_negative_numbers = true, help = AUDIT_HELP)]
     pub(super) audit: Option<u64>,
     /// Show no progress, and no summary at the end
+    #[arg(long, short)]
+    pub(super) quiet: bool,
+}
+
+#[derive(Debug, Args)]
+#[command(after_help = SWEEP_HELP)]
+pub(super) struct SweepArguments {
+    /// A preset's name, or a scenario file in TOML or JSON
+    pub(super) scenario: String,
+    #[arg(long, value_name = "PATH=VALUE,VALUE", help = SWEEP_SET_HELP)]
+    pub(super) set: Vec<Variation>,
+    /// How many seeds for each combination of values
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u64).range(1..=MOST_RUNS))]
+    pub(super) seeds: u64,
+    /// The first seed, in place of the scenario's; the others follow it
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(..=i64::MAX as u64))]
+    pub(super) seed: Option<u64>,
+    /// How many runs to carry out at a time [default: one on each core]
+    #[arg(long, value_name = "K", value_parser = clap::value_parser!(u16).range(1..=4096))]
+    pub(super) threads: Option<u16>,
+    /// Where to write [default: runs/NAME-sweep]
+    #[arg(long, value_name = "DIR")]
+    pub(super) out: Option<PathBuf>,
+    /// Stop all runs at this time, in √(d/g): the same as --set stop.time=T
+    #[arg(long, value_name = "T", allow_negative_numbers = true)]
+    pub(super) until: Option<f64>,
+    #[arg(long, value_name = "T", value_parser = interval, allow_negative_numbers = true, help = CHECKPOINT_HELP)]
+    pub(super) checkpoint_every: Option<f64>,
+    /// Overwrite an earlier sweep
+    #[arg(long)]
+    pub(super) force: bool,
+    /// Show no progress, and no table at the end
     #[arg(long, short)]
     pub(super) quiet: bool,
 }

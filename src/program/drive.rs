@@ -6,6 +6,7 @@ mod pace;
 mod report;
 mod state;
 
+use std::sync::Arc;
 use std::time::Instant;
 
 use rand_chacha::ChaCha8Rng;
@@ -24,14 +25,14 @@ use crate::program::drive::state::{SavedRun, Unusable};
 use crate::program::error::ProgramError;
 use crate::program::means::NormalMean;
 use crate::program::processor::ProcessorClock;
-use crate::program::progress::Progress;
+use crate::program::progress::{Gauge, Progress};
 use crate::program::show::say;
 use crate::program::signals::Signals;
 use crate::scenario::{Origin, Scenario, Start};
 use crate::setup::OneByOne;
 use crate::time::Time;
 
-pub(super) use files::begin;
+pub(super) use files::{begin, scenario_text};
 
 /// No run goes on for longer, in √(d/g).
 const LATEST: f64 = 8.0e9;
@@ -47,12 +48,30 @@ pub(super) struct Job {
     pub(super) folder: RunFolder,
     /// What stands in `scenario.toml`.
     pub(super) text: Vec<u8>,
+    pub(super) options: Options,
+}
+
+/// How a run is watched and saved, which no trajectory depends on.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Options {
     /// Checkpoints every so much simulated time; by the clock on the wall if
     /// not given.
     pub(super) checkpoint_every: Option<f64>,
     /// An audit every so many events.
     pub(super) audit: Option<u64>,
     pub(super) quiet: bool,
+    /// Where one of many runs tells how it is getting on.
+    pub(super) gauge: Option<Arc<Gauge>>,
+}
+
+impl Options {
+    /// Tells people something beside the results.
+    pub(super) fn note(&self, text: String) {
+        match &self.gauge {
+            Some(gauge) => gauge.note(text),
+            None => eprintln!("note:{text}"),
+        }
+    }
 }
 
 /// Who watches the run.
@@ -213,7 +232,7 @@ fn see_through<M: Model<D>, const D: usize>(
     mut run: Run<'_, M, D>,
     signals: &Signals,
 ) -> Result<u8, ProgramError> {
-    let mut progress = Progress::new(job.quiet);
+    let mut progress = Progress::new(job.options.quiet, job.options.gauge.clone());
     signals.begin();
     let ended = run.go(job, signals, &mut progress);
     progress.finish();
@@ -244,7 +263,7 @@ fn see_through<M: Model<D>, const D: usize>(
     if summary.stop_reason.is_finished() {
         Checkpoint::clear(&job.folder).map_err(ProgramError::io(folder.clone()))?;
     }
-    if !job.quiet {
+    if !job.options.quiet {
         say(&format!("{folder}: {summary}"))?;
     }
     Ok(exit_code)
@@ -258,10 +277,10 @@ impl<M: Model<D>, const D: usize> Run<'_, M, D> {
         signals: &Signals,
         progress: &mut Progress,
     ) -> Result<End, ProgramError> {
-        let mut audits = Audits::new(job.audit, self.simulation.counts().total());
+        let mut audits = Audits::new(job.options.audit, self.simulation.counts().total());
         let end = self.advance(job, signals, progress, &mut audits);
         progress.finish();
-        audits.write(&job.folder, job.quiet)?;
+        audits.write(&job.folder, job.options.quiet)?;
         let end = end?;
         if !end.reason.is_finished() {
             self.write_checkpoint(job)?;
@@ -282,7 +301,7 @@ impl<M: Model<D>, const D: usize> Run<'_, M, D> {
         audits: &mut Audits,
     ) -> Result<End, ProgramError> {
         let mut pace = Pace::new();
-        let mut cadence = Cadence::new(job.checkpoint_every, self.simulation.time());
+        let mut cadence = Cadence::new(job.options.checkpoint_every, self.simulation.time());
         if !self.resumed {
             self.files.row(&self.simulation)?;
             self.files.frame(&self.simulation)?;

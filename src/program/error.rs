@@ -2,6 +2,7 @@ use std::io;
 
 use crate::error::SetupError;
 use crate::output::{FolderError, XyzError};
+use crate::program::sweep::SweepError;
 use crate::scenario::{Refusal, ScenarioError};
 
 /// Why a command could not be carried out.
@@ -61,6 +62,17 @@ pub enum ProgramError {
         /// Its folder.
         folder: String,
     },
+    /// Runs can't be carried out together.
+    #[error(transparent)]
+    Sweep(#[from] SweepError),
+    /// One of many runs is refused.
+    #[error("{source}\n  where {combination}")]
+    Combination {
+        /// Why.
+        source: Box<ProgramError>,
+        /// Its values.
+        combination: String,
+    },
     /// A file of frames can't be read.
     #[error("{file}: {source}")]
     Frames {
@@ -77,7 +89,9 @@ impl ProgramError {
     #[must_use]
     pub fn exit_code(&self) -> u8 {
         match self {
-            ProgramError::Stopped { source, .. } => source.exit_code(),
+            ProgramError::Stopped { source, .. } | ProgramError::Combination { source, .. } => {
+                source.exit_code()
+            }
             ProgramError::Scenario(ScenarioError::Unreadable { .. })
             | ProgramError::Folder(FolderError::Io { .. })
             | ProgramError::Io { .. }
@@ -90,6 +104,7 @@ impl ProgramError {
             | ProgramError::UnknownSubject { .. }
             | ProgramError::SetUp(_)
             | ProgramError::Unresumable { .. }
+            | ProgramError::Sweep(_)
             | ProgramError::Folder(_)
             | ProgramError::Frames { .. } => 2,
         }

@@ -3,7 +3,7 @@
 use std::path::Path;
 
 use crate::program::error::ProgramError;
-use crate::scenario::{Assignment, Origin, Preset, Scenario, nearest, presets, read, read_text};
+use crate::scenario::{Assignment, Origin, Preset, Scenario, nearest, presets, read_text};
 
 /// A scenario and what it is called.
 pub(super) struct Loaded {
@@ -14,27 +14,27 @@ pub(super) struct Loaded {
 
 /// Reads a preset or a scenario file.
 pub(super) fn load(named: &str, assignments: Vec<Assignment>) -> Result<Loaded, ProgramError> {
+    let (name, mut origin) = open(named)?;
+    origin.assignments = assignments;
+    let scenario = read_text(&origin)?;
+    Ok(Loaded {
+        name,
+        origin,
+        scenario,
+    })
+}
+
+/// The text of a preset or of a scenario file, and what it is called.
+pub(super) fn open(named: &str) -> Result<(String, Origin), ProgramError> {
     if let Some(preset) = Preset::named(named) {
-        let mut origin = preset.origin();
-        origin.assignments = assignments;
-        let scenario = read_text(&origin)?;
-        return Ok(Loaded {
-            name: named.to_owned(),
-            origin,
-            scenario,
-        });
+        return Ok((named.to_owned(), preset.origin()));
     }
     let path = Path::new(named);
     if !path.exists() && !looks_like_a_file(path) {
         return Err(unknown(named));
     }
-    let (origin, scenario) = read(path, assignments)?;
     let stem = path.file_stem().unwrap_or_default();
-    Ok(Loaded {
-        name: stem.to_string_lossy().into_owned(),
-        origin,
-        scenario,
-    })
+    Ok((stem.to_string_lossy().into_owned(), Origin::open(path)?))
 }
 
 fn looks_like_a_file(path: &Path) -> bool {

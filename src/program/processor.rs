@@ -1,8 +1,9 @@
-//! How much processor time this process has taken.
+//! How much processor time a run has taken.
 
 use std::time::Duration;
 
-/// A clock of processor time, or of passed time where there is none.
+/// A clock of the processor time of one thread, the one that started it and
+/// reads it, or of passed time where there is none.
 pub(super) struct ProcessorClock {
     start: Duration,
     #[cfg(not(unix))]
@@ -34,7 +35,7 @@ impl ProcessorClock {
 
 #[cfg(unix)]
 fn now() -> Duration {
-    let time = rustix::time::clock_gettime(rustix::time::ClockId::ProcessCPUTime);
+    let time = rustix::time::clock_gettime(rustix::time::ClockId::ThreadCPUTime);
     Duration::new(
         u64::try_from(time.tv_sec).unwrap_or(0),
         u32::try_from(time.tv_nsec).unwrap_or(0),

@@ -5,7 +5,7 @@ use std::io;
 
 use crate::output::{Checkpoint, CheckpointError, RunFolder, StoppedBy, Summary};
 use crate::program::cli::ResumeArguments;
-use crate::program::drive::{Attempt, Job, go_on};
+use crate::program::drive::{Attempt, Job, Options, go_on};
 use crate::program::error::ProgramError;
 use crate::program::run::start;
 use crate::program::show::say;
@@ -13,37 +13,64 @@ use crate::program::signals::Signals;
 use crate::scenario::{Dimension, Gravity, read};
 
 pub(super) fn resume(arguments: &ResumeArguments) -> Result<u8, ProgramError> {
+    let options = Options {
+        checkpoint_every: arguments.checkpoint_every,
+        audit: arguments.audit,
+        quiet: arguments.quiet,
+        gauge: None,
+    };
     let folder = RunFolder::open(&arguments.folder)?;
+    let shown = folder.path().display().to_string();
+    let signals = Signals::listen().map_err(ProgramError::io("signals"))?;
+    match continued(folder, options, &signals)? {
+        Continued::Ended(code) => Ok(code),
+        Continued::Finished(reason) => {
+            if !arguments.quiet {
+                say(&format!(
+                    "{shown}: finished already ({reason}); nothing to do"
+                ))?;
+            }
+            Ok(0)
+        }
+    }
+}
+
+/// What has become of a run that was begun earlier.
+pub(super) enum Continued {
+    /// It had come to its end, and why.
+    Finished(&'static str),
+    /// It has gone on, and this is its exit code.
+    Ended(u8),
+}
+
+/// Goes on with the run in a folder, unless it is finished.
+pub(super) fn continued(
+    folder: RunFolder,
+    options: Options,
+    signals: &Signals,
+) -> Result<Continued, ProgramError> {
     let _lock = folder.lock()?;
     if let Some(reason) = finished(&folder) {
         // Of a run that was killed at its very end.
         tidy(&folder)?;
         Checkpoint::clear(&folder).map_err(access(&folder, "checkpoint"))?;
-        if !arguments.quiet {
-            let shown = folder.path().display();
-            say(&format!(
-                "{shown}: finished already ({reason}); nothing to do"
-            ))?;
-        }
-        return Ok(0);
+        return Ok(Continued::Finished(reason));
     }
     let file = folder.file("scenario.toml");
     let (origin, scenario) = read(&file, Vec::new())?;
     let text = fs::read(&file).map_err(access(&folder, "scenario.toml"))?;
-    let signals = Signals::listen().map_err(ProgramError::io("signals"))?;
     let job = Job {
         origin,
         scenario,
         folder,
         text,
-        checkpoint_every: arguments.checkpoint_every,
-        audit: arguments.audit,
-        quiet: arguments.quiet,
+        options,
     };
-    match job.scenario.dimension {
-        Dimension::Two => newest_good::<2>(&job, &signals),
-        Dimension::Three => newest_good::<3>(&job, &signals),
-    }
+    let code = match job.scenario.dimension {
+        Dimension::Two => newest_good::<2>(&job, signals),
+        Dimension::Three => newest_good::<3>(&job, signals),
+    };
+    code.map(Continued::Ended)
 }
 
 /// Goes on from the newest checkpoint that is good.
@@ -112,7 +139,8 @@ fn attempt<const D: usize>(
 /// away what is out of date.
 fn prepare(job: &Job, skipped: &str, name: &str) -> Result<(), ProgramError> {
     if !skipped.is_empty() {
-        eprintln!("note:{skipped}\n  going on from {name}");
+        job.options
+            .note(format!("{skipped}\n  going on from {name}"));
     }
     for name in ["summary.json", "audit.json"] {
         match fs::remove_file(job.folder.file(name)) {

@@ -6,15 +6,18 @@ use toml::Value;
 
 use crate::output::RunFolder;
 use crate::program::cli::RunArguments;
-use crate::program::drive::{self, Job};
+use crate::program::drive::{self, Job, Options};
 use crate::program::error::ProgramError;
 use crate::program::load::{Loaded, load};
 use crate::program::show::check_grains;
 use crate::program::signals::Signals;
-use crate::scenario::{Assignment, Dimension, Gravity, Path, Scenario, Start};
+use crate::scenario::{Assignment, Dimension, Gravity, Origin, Path, Scenario, Start};
 
 pub(super) fn run(arguments: &RunArguments) -> Result<u8, ProgramError> {
-    let loaded = load(&arguments.scenario, assignments(arguments))?;
+    let mut assignments = arguments.set.clone();
+    assignments.extend(arguments.seed.map(seed_is));
+    assignments.extend(arguments.until.map(until));
+    let loaded = load(&arguments.scenario, assignments)?;
     let seed = loaded.scenario.seed;
     let folder = arguments
         .out
@@ -22,44 +25,68 @@ pub(super) fn run(arguments: &RunArguments) -> Result<u8, ProgramError> {
         .unwrap_or_else(|| PathBuf::from("runs").join(format!("{}-{seed}", loaded.name)));
     // Before grains are made, which may take a while.
     RunFolder::check(&folder, arguments.force)?;
-    match loaded.scenario.dimension {
-        Dimension::Two => begin::<2>(arguments, loaded, &folder),
-        Dimension::Three => begin::<3>(arguments, loaded, &folder),
-    }
-}
-
-/// Refuses what can be refused at once, makes the folder, and starts.
-fn begin<const D: usize>(
-    arguments: &RunArguments,
-    loaded: Loaded,
-    folder: &FilePath,
-) -> Result<u8, ProgramError> {
-    let Loaded {
-        mut origin,
-        scenario,
-        ..
-    } = loaded;
-    let given = check_grains::<D>(&origin, &scenario)?;
-    let signals = Signals::listen().map_err(ProgramError::io("signals"))?;
-    let folder = RunFolder::create(folder, arguments.force)?;
-    let (text, scenario) = drive::begin(&folder, &scenario, given.files())?;
-    drop(given);
-    // What it names may have stood in the run that has just been overwritten.
-    origin.folder = folder.path().to_path_buf();
-    let job = Job {
-        origin,
-        scenario,
-        folder,
-        text,
+    let options = Options {
         checkpoint_every: arguments.checkpoint_every,
         audit: arguments.audit,
         quiet: arguments.quiet,
+        gauge: None,
     };
-    let done = start::<D>(&job, &signals);
-    if let Err(ProgramError::Scenario(_)) = done {
-        job.folder.discard();
+    let Loaded {
+        origin, scenario, ..
+    } = loaded;
+    let signals = Signals::listen().map_err(ProgramError::io("signals"))?;
+    Run {
+        origin,
+        scenario,
+        folder: &folder,
+        force: arguments.force,
+        options,
     }
-    done
+    .begin(&signals)
+}
+
+/// A run that has not begun.
+pub(super) struct Run<'a> {
+    pub(super) origin: Origin,
+    pub(super) scenario: Scenario,
+    /// Where to.
+    pub(super) folder: &'a FilePath,
+    /// Whether an earlier run may be overwritten.
+    pub(super) force: bool,
+    pub(super) options: Options,
+}
+
+impl Run<'_> {
+    /// Runs it and says the exit code.
+    pub(super) fn begin(self, signals: &Signals) -> Result<u8, ProgramError> {
+        match self.scenario.dimension {
+            Dimension::Two => self.begin_in::<2>(signals),
+            Dimension::Three => self.begin_in::<3>(signals),
+        }
+    }
+
+    /// Refuses what can be refused at once, makes the folder, and starts.
+    fn begin_in<const D: usize>(self, signals: &Signals) -> Result<u8, ProgramError> {
+        let mut origin = self.origin;
+        let given = check_grains::<D>(&origin, &self.scenario)?;
+        let folder = RunFolder::create(self.folder, self.force)?;
+        let (text, scenario) = drive::begin(&folder, &self.scenario, given.files())?;
+        drop(given);
+        // What it names may have stood in the run that has just been overwritten.
+        origin.folder = folder.path().to_path_buf();
+        let job = Job {
+            origin,
+            scenario,
+            folder,
+            text,
+            options: self.options,
+        };
+        let done = start::<D>(&job, signals);
+        if let Err(ProgramError::Scenario(_)) = done {
+            job.folder.discard();
+        }
+        done
+    }
 }
 
 /// Makes the grains and picks the model: without gravity nobody sleeps.
@@ -78,19 +105,15 @@ pub(super) fn start<const D: usize>(job: &Job, signals: &Signals) -> Result<u8, 
     }
 }
 
-/// All values given on the command line; `--seed` and `--until` come last.
-fn assignments(arguments: &RunArguments) -> Vec<Assignment> {
-    let mut all = arguments.set.clone();
-    if let Some(seed) = arguments.seed {
-        // The parser keeps it within the range of whole numbers of TOML.
-        let value = Value::Integer(i64::try_from(seed).unwrap_or(i64::MAX));
-        let path = Path::root().key("seed");
-        all.push(Assignment::new(path, value, format!("--seed {seed}")));
-    }
-    if let Some(until) = arguments.until {
-        let path = Path::root().key("stop").key("time");
-        let text = format!("--until {until:?}");
-        all.push(Assignment::new(path, Value::Float(until), text));
-    }
-    all
+/// What `--seed` says.
+pub(super) fn seed_is(seed: u64) -> Assignment {
+    // The parser keeps it within the range of whole numbers of TOML.
+    let value = Value::Integer(i64::try_from(seed).unwrap_or(i64::MAX));
+    Assignment::new(Path::root().key("seed"), value, format!("--seed {seed}"))
+}
+
+/// What `--until` says.
+pub(super) fn until(time: f64) -> Assignment {
+    let path = Path::root().key("stop").key("time");
+    Assignment::new(path, Value::Float(time), format!("--until {time:?}"))
 }

@@ -31,9 +31,12 @@ impl Signals {
         Ok(Signals { exit_code, at_once })
     }
 
-    /// The run begins: a first signal asks it to end.
+    /// A run begins: a first signal asks it to end. If that has come already,
+    /// while another run went on, the next one still ends the process.
     pub(super) fn begin(&self) {
-        self.at_once.store(false, Ordering::Relaxed);
+        if self.exit_code().is_none() {
+            self.at_once.store(false, Ordering::Relaxed);
+        }
     }
 
     /// The exit code that belongs to the signal that has come, if any.

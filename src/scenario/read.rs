@@ -133,7 +133,7 @@ impl Origin {
     }
 
     /// The text as a tree, with the assignments in it.
-    fn tree(&self) -> Result<Table, Refusal> {
+    pub(crate) fn tree(&self) -> Result<Table, Refusal> {
         let mut table = match self.format {
             Format::Toml => toml::from_str::<Table>(&self.text).map_err(|error| {
                 let line = error.span().map(|span| Line::at(&self.text, span.start));

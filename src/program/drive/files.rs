@@ -50,26 +50,51 @@ pub(in crate::program) fn begin(
     scenario: &Scenario,
     inputs: &[(usize, Frame)],
 ) -> Result<(Vec<u8>, Scenario), ProgramError> {
-    let mut resolved = scenario.clone();
+    let resolved = with_inputs(scenario);
     for (index, frame) in inputs {
-        let name = format!("input-{index}.xyz");
+        let name = input(*index);
         let mut text = Vec::new();
         frame
             .write(&mut text)
             .map_err(ProgramError::io(name.clone()))?;
         folder.write(&name, &text)?;
-        resolved.grains[*index].file = Some(name);
     }
-    let text = toml::to_string(&resolved)
+    let text = text_of(&resolved)?;
+    write_checkpoint(folder, &Checkpoint::new(&text, nothing_yet()))?;
+    folder.write("scenario.toml", &text)?;
+    Ok((text, resolved))
+}
+
+/// What stands in the `scenario.toml` of a run of a scenario.
+pub(in crate::program) fn scenario_text(scenario: &Scenario) -> Result<Vec<u8>, ProgramError> {
+    text_of(&with_inputs(scenario))
+}
+
+/// The copy of a file of grains, named after the place of its source in the
+/// list.
+fn input(index: usize) -> String {
+    format!("input-{index}.xyz")
+}
+
+/// The scenario with these copies in the place of the files that it names.
+fn with_inputs(scenario: &Scenario) -> Scenario {
+    let mut resolved = scenario.clone();
+    for (index, source) in resolved.grains.iter_mut().enumerate() {
+        if let Some(file) = &mut source.file {
+            *file = input(index);
+        }
+    }
+    resolved
+}
+
+fn text_of(resolved: &Scenario) -> Result<Vec<u8>, ProgramError> {
+    let text = toml::to_string(resolved)
         .map_err(|error| ProgramError::io("scenario.toml")(std::io::Error::other(error)))?;
     let head = format!(
         "# As run by grainfall {}, with every default written out.\n\n",
         env!("CARGO_PKG_VERSION")
     );
-    let text = (head + &text).into_bytes();
-    write_checkpoint(folder, &Checkpoint::new(&text, nothing_yet()))?;
-    folder.write("scenario.toml", &text)?;
-    Ok((text, resolved))
+    Ok((head + &text).into_bytes())
 }
 
 pub(super) fn write_checkpoint(

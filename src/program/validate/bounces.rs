@@ -9,7 +9,8 @@ use crate::model::{Occurrence, Parts};
 use crate::particle::{Particle, Vector};
 use crate::policy::Never;
 use crate::predict::Polynomial;
-use crate::program::validate::check::{Allowance, Check, Estimate, Source};
+use crate::program::estimate::Estimate;
+use crate::program::validate::check::{Allowance, Check, Source};
 use crate::program::validate::effort::Effort;
 
 static SERIES: Source = Source {

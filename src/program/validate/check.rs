@@ -2,6 +2,8 @@
 
 use serde::Serialize;
 
+use crate::program::estimate::Estimate;
+
 /// Where a reference value comes from.
 #[derive(Debug, Serialize)]
 pub(super) struct Source {
@@ -9,39 +11,6 @@ pub(super) struct Source {
     pub(super) name: &'static str,
     /// Where it stands.
     pub(super) citation: &'static str,
-}
-
-/// A mean and its standard error.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Estimate {
-    pub(super) mean: f64,
-    pub(super) error: f64,
-}
-
-impl Estimate {
-    /// Of independent samples. A single one has no known error.
-    pub(super) fn of(samples: &[f64]) -> Self {
-        let count = samples.len() as f64;
-        let mean = samples.iter().sum::<f64>() / count;
-        let square = samples.iter().map(|x| (x - mean) * (x - mean)).sum::<f64>();
-        Estimate {
-            mean,
-            error: (square / (count * (count - 1.0))).sqrt(),
-        }
-    }
-
-    /// Known to rounding.
-    pub(super) fn exact(mean: f64) -> Self {
-        Estimate { mean, error: 0.0 }
-    }
-
-    /// The same in another unit.
-    pub(super) fn times(self, factor: f64) -> Self {
-        Estimate {
-            mean: self.mean * factor,
-            error: self.error * factor,
-        }
-    }
 }
 
 /// What is allowed: so many standard errors of the measurement, and so much of
@@ -188,12 +157,5 @@ mod tests {
         assert_eq!(judge(f64::NAN, 0.1, allowance), Verdict::Fail);
         assert_eq!(judge(10.0, f64::NAN, allowance), Verdict::Fail);
         assert_eq!(judge(10.06, 0.1, Allowance::flat(0.005)), Verdict::Fail);
-    }
-
-    #[test]
-    fn the_error_is_that_of_the_mean() {
-        let estimate = Estimate::of(&[1.0, 2.0, 3.0, 4.0]);
-        assert!((estimate.mean - 2.5).abs() < 1e-15);
-        assert!((estimate.error - (5.0_f64 / 12.0).sqrt()).abs() < 1e-15);
     }
 }

@@ -7,7 +7,8 @@ use crate::analysis::kinetic_theory::{
 };
 use crate::analysis::{contact_value, kolafa_labik_malijevsky, virial_disks};
 use crate::error::SetupError;
-use crate::program::validate::check::{Allowance, Check, Estimate, Source};
+use crate::program::estimate::Estimate;
+use crate::program::validate::check::{Allowance, Check, Source};
 use crate::program::validate::effort::Effort;
 use crate::program::validate::fluid::Fluid;
 

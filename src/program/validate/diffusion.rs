@@ -10,7 +10,8 @@ use crate::engine::Limits;
 use crate::error::SetupError;
 use crate::observe::Displacements;
 use crate::particle::Vector;
-use crate::program::validate::check::{Allowance, Check, Estimate, Source};
+use crate::program::estimate::Estimate;
+use crate::program::validate::check::{Allowance, Check, Source};
 use crate::program::validate::effort::Effort;
 use crate::program::validate::fluid::Fluid;
 

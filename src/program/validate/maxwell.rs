@@ -2,7 +2,8 @@
 
 use crate::error::SetupError;
 use crate::particle::{Particle, Vector};
-use crate::program::validate::check::{Allowance, Check, Estimate, Source};
+use crate::program::estimate::Estimate;
+use crate::program::validate::check::{Allowance, Check, Source};
 use crate::program::validate::effort::Effort;
 use crate::program::validate::fluid::Fluid;
 

@@ -9,7 +9,8 @@ use crate::analysis::{
 };
 use crate::error::SetupError;
 use crate::observe::CollisionalTransfer;
-use crate::program::validate::check::{Allowance, Check, Estimate, Source};
+use crate::program::estimate::Estimate;
+use crate::program::validate::check::{Allowance, Check, Source};
 use crate::program::validate::effort::Effort;
 use crate::program::validate::fluid::Fluid;
 
