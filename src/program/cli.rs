@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand};
 
+use crate::program::bench::BenchArguments;
 use crate::scenario::Assignment;
 
 const EXAMPLES: &str = "\
@@ -15,6 +16,7 @@ Examples:
   grainfall resume runs/deposition-1            go on after an interruption
   grainfall draw runs/deposition-1 --time 50
   grainfall validate --quick                    known physics, in a minute
+  grainfall bench gas                           what a collision costs
 
 Exit codes:
   0 done · 1 input or output, or a validation, failed · 2 refused input ·
@@ -123,6 +125,8 @@ pub(super) enum Command {
     Draw(DrawArguments),
     /// Measure known physics and say whether it comes out right
     Validate(ValidateArguments),
+    /// Measure what events cost, in time and memory
+    Bench(BenchArguments),
 }
 
 #[derive(Debug, Args)]
