@@ -1,8 +1,12 @@
 //! `grainfall bench`: what events cost, in time and memory.
 
 mod arguments;
+mod deposition;
 mod gas;
+mod growth;
 mod memory;
+mod scaling;
+mod table;
 mod timing;
 
 pub(super) use arguments::BenchArguments;
@@ -13,5 +17,8 @@ use crate::program::error::ProgramError;
 pub(super) fn bench(arguments: &BenchArguments) -> Result<u8, ProgramError> {
     match &arguments.subject {
         Subject::Gas(arguments) => gas::measure(arguments),
+        Subject::Deposition(arguments) => deposition::measure(arguments),
+        Subject::Growth(arguments) => growth::measure(arguments),
+        Subject::Scaling(arguments) => scaling::measure(arguments),
     }
 }

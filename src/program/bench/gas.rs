@@ -21,7 +21,7 @@ use crate::program::bench::timing::timed;
 use crate::program::error::ProgramError;
 use crate::program::processor::ProcessorClock;
 use crate::program::progress::Progress;
-use crate::program::show::say;
+use crate::program::show::say_result;
 use crate::setup::{Crystal, Gas, seeded};
 use crate::time::Time;
 
@@ -187,7 +187,7 @@ impl Plan {
 }
 
 /// The times before the timed part with which other programs were measured.
-fn usual_equilibration(count: usize, packing_fraction: f64) -> f64 {
+pub(super) fn usual_equilibration(count: usize, packing_fraction: f64) -> f64 {
     let times = match count {
         ..30_000 => [3.0, 2.0, 1.0],
         30_000..300_000 => [1.0, 0.5, 0.1],
@@ -196,7 +196,7 @@ fn usual_equilibration(count: usize, packing_fraction: f64) -> f64 {
     times[usize::from(packing_fraction > 0.2) + usize::from(packing_fraction > 0.4)]
 }
 
-fn usual_collisions(count: usize) -> u64 {
+pub(super) fn usual_collisions(count: usize) -> u64 {
     match count {
         ..30_000 => 300_000,
         30_000..300_000 => 500_000,
@@ -316,12 +316,6 @@ pub(super) fn measure(arguments: &GasArguments) -> Result<u8, ProgramError> {
         outcome.trajectory_hash = Some(format!("{:016x}", hash.value()));
     }
     progress.finish();
-    if arguments.json {
-        let line = serde_json::to_string(&outcome)
-            .map_err(|error| ProgramError::io("the result")(std::io::Error::other(error)))?;
-        say(&line)?;
-    } else {
-        say(&outcome.to_string())?;
-    }
+    say_result(&outcome, arguments.json)?;
     Ok(0)
 }
