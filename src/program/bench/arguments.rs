@@ -221,9 +221,9 @@ pub(super) struct GrowthArguments {
         allow_negative_numbers = true
     )]
     pub(super) sleep_speeds: Vec<f64>,
-    /// V_c, below which collisions are elastic, in √(gd)
-    #[arg(long, value_name = "Vc", value_parser = not_negative, default_value = "1e-4", allow_negative_numbers = true)]
-    pub(super) elastic_speed: f64,
+    /// V_c, below which collisions are elastic, in √(gd) [default: 1e-4]
+    #[arg(long, value_name = "Vc", value_parser = not_negative, allow_negative_numbers = true)]
+    pub(super) elastic_speed: Option<f64>,
     /// Stop at this time [default: 30 without sleep, else when all grains sleep]
     #[arg(long, value_name = "T", value_parser = positive, allow_negative_numbers = true)]
     pub(super) until: Option<f64>,
@@ -236,7 +236,7 @@ pub(super) struct GrowthArguments {
     /// Write the rows to this file too, as CSV
     #[arg(long, value_name = "FILE.csv")]
     pub(super) out: Option<PathBuf>,
-    /// A small one: 200 grains on a base of 4 d, 6 √(d/g) without sleep, unless said otherwise
+    /// A small one: 200 grains on a base of 4 d, V_c = 1e-3, 6 √(d/g) without sleep, unless said otherwise
     #[arg(long)]
     pub(super) quick: bool,
 }

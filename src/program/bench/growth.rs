@@ -25,6 +25,9 @@ pub(super) fn measure(arguments: &GrowthArguments) -> Result<u8, ProgramError> {
     let small = arguments.quick;
     let count = arguments.count.unwrap_or(if small { 200 } else { 1500 });
     let width = arguments.width.unwrap_or(if small { 4.0 } else { 10.0 });
+    let elastic_speed = arguments
+        .elastic_speed
+        .unwrap_or(if small { 1.0e-3 } else { 1.0e-4 });
     let endless_until = if small { 6.0 } else { 30.0 };
     for &speed in &arguments.sleep_speeds {
         if !(speed >= 0.0 && speed.is_finite()) {
@@ -43,7 +46,7 @@ pub(super) fn measure(arguments: &GrowthArguments) -> Result<u8, ProgramError> {
             count,
             width,
             sleep_speed,
-            elastic_speed: arguments.elastic_speed,
+            elastic_speed,
             seed: arguments.seed,
         };
         let mut simulation = rain.simulation(&Memory::before())?;

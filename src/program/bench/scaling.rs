@@ -152,7 +152,7 @@ fn on_top_of(
         dynamics: model.dynamics,
         predictor: model.predictor,
         collision_rule: model.collision_rule,
-        state_policy: model.state_policy.clone(),
+        state_policy: model.state_policy,
         boundary: model.boundary.clone(),
     };
     Simulation::with_settings(model, heap, *like.settings())
