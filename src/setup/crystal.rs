@@ -18,7 +18,7 @@ const PLACES: [[f64; 3]; 4] = [
     [0.25, 0.75, 0.75],
 ];
 
-/// More cells along an edge would have more grains than have ids.
+/// More cells along an edge would hold more grains than there are ids.
 const MOST_CELLS: usize = 1000;
 
 /// Equal spheres of diameter 1 on a face-centred cubic lattice that fills a
@@ -61,22 +61,20 @@ impl Crystal {
     /// The k for which 4 k³ is this many, if there is one.
     #[must_use]
     pub fn cells_of(count: usize) -> Option<usize> {
-        let (below, above) = Crystal::counts_around(count);
-        (below == above).then(|| (1..).find(|k| 4 * k * k * k == count))?
+        (1..=MOST_CELLS).find(|&cells| grains_in(cells) == count)
     }
 
-    /// The numbers of grains that fill whole cells nearest to `count` from
-    /// below and from above; `count` twice, if it is such a number.
+    /// The numbers of grains nearest to `count`, from below and from above, that
+    /// fill whole cells; `count` twice, if it does.
     #[must_use]
     pub fn counts_around(count: usize) -> (usize, usize) {
-        let grains = |k: usize| 4 * k * k * k;
-        let above = (1..MOST_CELLS)
-            .find(|&k| grains(k) >= count)
-            .unwrap_or(MOST_CELLS);
-        if grains(above) == count || above == 1 {
-            return (grains(above), grains(above));
-        }
-        (grains(above - 1), grains(above))
+        let full = (1..=MOST_CELLS).map(grains_in);
+        let below = full.clone().take_while(|&full| full <= count).last();
+        let above = full.clone().find(|&full| full >= count);
+        (
+            below.unwrap_or(grains_in(1)),
+            above.unwrap_or(grains_in(MOST_CELLS)),
+        )
     }
 
     /// The grains, all [`Mode::Normal`], cell by cell, and the edges of the box,
@@ -121,7 +119,7 @@ impl Crystal {
                 least: 2.0,
             });
         }
-        let count = 4 * self.cells * self.cells * self.cells;
+        let count = grains_in(self.cells);
         let masses = vec![1.0; count];
         let velocities = thermal::<3>(&masses, self.temperature, rng);
         drop(masses);
@@ -146,4 +144,9 @@ impl Crystal {
             .collect();
         Ok((grains, Vector::repeat(edge)))
     }
+}
+
+/// Grains in a cube of so many cells along each edge.
+fn grains_in(cells: usize) -> usize {
+    4 * cells * cells * cells
 }

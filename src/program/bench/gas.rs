@@ -9,7 +9,6 @@ use crate::boundary::{Cuboid, Side};
 use crate::collide::Restitution;
 use crate::dynamics::ForceFree;
 use crate::engine::{Guards, Limits, Settings, Simulation};
-use crate::error::SetupError;
 use crate::model::Parts;
 use crate::observe::TrajectoryHash;
 use crate::particle::{Particle, Vector};
@@ -68,22 +67,24 @@ impl Plan {
     }
 
     /// The grains and the edges of their box.
-    fn grains(&self) -> Result<(Vec<Particle<3>>, Vector<3>), SetupError> {
+    fn grains(&self) -> Result<(Vec<Particle<3>>, Vector<3>), ProgramError> {
         let mut rng = seeded(self.seed);
         match self.start {
             GasStart::Crystal => {
-                let cells = Crystal::cells_of(self.count).ok_or(SetupError::Parameter {
-                    field: "count",
-                    value: self.count as f64,
-                    allowed: "4 k³ is allowed, such as 108, 256, 500, 1372, 4000, 10976, 97556, \
-                              1000188; or any number with --start fluid",
+                let cells = Crystal::cells_of(self.count).ok_or_else(|| {
+                    let (below, above) = Crystal::counts_around(self.count);
+                    ProgramError::CrystalCount {
+                        count: self.count,
+                        below,
+                        above,
+                    }
                 })?;
                 let crystal = Crystal {
                     cells,
                     packing_fraction: self.packing_fraction,
                     temperature: 1.0,
                 };
-                crystal.grains(&mut rng)
+                Ok(crystal.grains(&mut rng)?)
             }
             GasStart::Fluid => {
                 let gas = Gas::<3> {
@@ -91,13 +92,13 @@ impl Plan {
                     packing_fraction: self.packing_fraction,
                     ..Gas::default()
                 };
-                gas.grains(&mut rng)
+                Ok(gas.grains(&mut rng)?)
             }
         }
     }
 
     /// The gas in motion.
-    fn simulation(&self, memory: &Memory) -> Result<Simulation<Elastic, 3>, SetupError> {
+    fn simulation(&self, memory: &Memory) -> Result<Simulation<Elastic, 3>, ProgramError> {
         let (grains, edges) = self.grains()?;
         memory.forget_peak();
         let model = Parts {
@@ -112,7 +113,7 @@ impl Plan {
             guards: Guards::none(),
             ..Settings::default()
         };
-        Simulation::with_settings(model, grains, settings)
+        Ok(Simulation::with_settings(model, grains, settings)?)
     }
 
     /// Until the gas has forgotten how it was made.
@@ -122,7 +123,7 @@ impl Plan {
     }
 
     /// Measures it.
-    pub(super) fn run(&self, progress: &mut Progress) -> Result<Outcome, SetupError> {
+    pub(super) fn run(&self, progress: &mut Progress) -> Result<Outcome, ProgramError> {
         let memory = Memory::before();
         let clock = ProcessorClock::start();
         let mut simulation = self.simulation(&memory)?;
@@ -175,7 +176,7 @@ impl Plan {
     }
 
     /// The hash of the timed part.
-    fn hash(&self, progress: &mut Progress) -> Result<TrajectoryHash, SetupError> {
+    fn hash(&self, progress: &mut Progress) -> Result<TrajectoryHash, ProgramError> {
         let mut simulation = self.simulation(&Memory::before())?;
         self.equilibrate(&mut simulation, progress);
         let mut hash = TrajectoryHash::new();
