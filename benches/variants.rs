@@ -17,7 +17,7 @@ use grainfall::setup::{Gas, Sizes, seeded};
 const EVENTS: u64 = 10_000;
 
 /// A gas that has forgotten how it was made.
-fn in_equilibrium<const D: usize>(gas: &Gas<D>) -> Simulation<impl Model<D>, D> {
+fn in_equilibrium<const D: usize>(gas: Gas<D>) -> Simulation<impl Model<D>, D> {
     let (grains, lengths) = gas.grains(&mut seeded(1)).expect("a valid gas");
     let sides = std::array::from_fn(|axis| Side::periodic(lengths[axis]));
     let model = Parts {
@@ -38,7 +38,7 @@ fn measure<const D: usize>(criterion: &mut Criterion, name: &str, sizes: Sizes, 
     let mut group = criterion.benchmark_group(name);
     group.throughput(Throughput::Elements(EVENTS));
     for &packing_fraction in fractions {
-        let mut simulation = in_equilibrium(&Gas::<D> {
+        let mut simulation = in_equilibrium(Gas::<D> {
             packing_fraction,
             sizes,
             ..Gas::default()

@@ -493,7 +493,10 @@ fn measurements_that_cannot_be_are_refused() {
         ("deposition --sleep-speed -0.1", &["--sleep-speed"]),
         ("deposition --from 5 --until 5", &["until is 5", "--from"]),
         ("deposition --until 5 --events 7", &["--events"]),
-        ("deposition --count 10 --width 1", &["length"]),
+        (
+            "deposition --count 10 --width 1",
+            &["width is 1;", "2 or more"],
+        ),
         (
             "deposition --quick --count 10 --width 4 --from 1000",
             &["from is 1000", "before all grains sleep"],

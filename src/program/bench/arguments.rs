@@ -148,7 +148,7 @@ Examples:
 
 It is the preset `deposition`: the same numbers make the same trajectory, and
 the hash of a whole run is the one in its summary. The base is as wide as makes
-the rain as high as the paper's, 480 d, if --width does not say it: 10 d for 4800
+the rain as high as the paper's, 500 d, if --width does not say it: 10 d for 4800
 grains. Wide rains differ from it in nothing but their width.
 
 Physical events of any kind count as one each: what `grainfall run` counts, too.

@@ -58,6 +58,15 @@ impl Rain {
         &self,
         memory: &Memory,
     ) -> Result<Simulation<GravityModel<3>, 3>, ProgramError> {
+        if self.width < 2.0 {
+            return Err(SetupError::Parameter {
+                field: "width",
+                value: self.width,
+                allowed: "2 or more is allowed, two diameters; the usual width is less for fewer \
+                          than 192 grains",
+            }
+            .into());
+        }
         let preset = Preset::named("deposition").ok_or_else(|| ProgramError::UnknownScenario {
             name: "deposition".to_owned(),
             hint: String::new(),
