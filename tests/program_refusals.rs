@@ -557,3 +557,57 @@ fn subjects_of_validation_are_told_apart() {
     assert_eq!(checks.len(), 6);
     assert!(checks.iter().all(|check| check["verdict"] == "pass"));
 }
+
+#[test]
+fn measurements_that_cannot_be_are_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let cases: &[(&str, &[&str])] = &[
+        (
+            "gas --count 1000",
+            &["1000", "864", "1372", "--start fluid"],
+        ),
+        ("gas --count 0", &["--count", "from 1 to"]),
+        (
+            "gas --count 108 --packing-fraction 0.75",
+            &["0.75", "0.7405"],
+        ),
+        (
+            "gas --packing-fraction -1",
+            &["--packing-fraction", "above 0"],
+        ),
+        ("gas --count 4 --packing-fraction 0.7", &["at least 2 d"]),
+        ("gas --collisions 0", &["--collisions", "from 1 on"]),
+        ("gas --equilibrate nan", &["--equilibrate", "from 0 on"]),
+        ("gas --start glass", &["glass", "crystal", "fluid"]),
+        ("deposition --sleep-speed -0.1", &["--sleep-speed"]),
+        ("deposition --from 5 --until 5", &["until is 5", "--from"]),
+        ("deposition --until 5 --events 7", &["--events"]),
+        (
+            "deposition --count 10 --width 1",
+            &["width is 1;", "2 or more"],
+        ),
+        (
+            "deposition --quick --count 10 --width 4 --from 1000",
+            &["from is 1000", "before all grains sleep"],
+        ),
+        ("growth --sleep-speeds 0.1,-1", &["sleep_speeds is -1"]),
+        ("growth --step 0", &["--step", "above 0"]),
+        ("scaling --only sand", &["sand", "frozen"]),
+    ];
+    for (typed, wanted) in cases {
+        let arguments: Vec<&str> = std::iter::once("bench")
+            .chain(typed.split_whitespace())
+            .collect();
+        let refused = grainfall(folder.path(), &arguments);
+        let said = message(&refused);
+        assert_eq!(refused.status.code(), Some(2), "{typed}\n{said}");
+        assert!(refused.stdout.is_empty(), "{typed} began all the same");
+        for part in *wanted {
+            assert!(said.contains(part), "{typed}\n{said}\nlacks {part}");
+        }
+    }
+    let unwritable = ["bench", "growth", "--quick", "--out", "nowhere/growth.csv"];
+    let refused = grainfall(folder.path(), &unwritable);
+    assert_eq!(refused.status.code(), Some(1));
+    assert!(refused.stdout.is_empty(), "it began all the same");
+}

@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand};
 
+use crate::program::bench::BenchArguments;
 use crate::program::sweep::{MOST_RUNS, Variation};
 use crate::scenario::Assignment;
 
@@ -18,6 +19,7 @@ Examples:
                                                 many runs, on all cores
   grainfall draw runs/deposition-1 --time 50
   grainfall validate --quick                    known physics, in a minute
+  grainfall bench gas                           what a collision costs
 
 Exit codes:
   0 done · 1 input or output, or a validation, failed · 2 refused input ·
@@ -159,6 +161,8 @@ pub(super) enum Command {
     Draw(DrawArguments),
     /// Measure known physics and say whether it comes out right
     Validate(ValidateArguments),
+    /// Measure what events cost, in time and memory
+    Bench(BenchArguments),
 }
 
 #[derive(Debug, Args)]

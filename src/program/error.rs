@@ -39,7 +39,20 @@ pub enum ProgramError {
         /// Those that there are.
         known: String,
     },
-    /// A system for a validation can't be set up.
+    /// So many grains don't fill a crystal.
+    #[error(
+        "count is {count}; a crystal has 4 k³ grains: {below} and {above} are nearest; any number \
+         is allowed with --start fluid"
+    )]
+    CrystalCount {
+        /// How many there were to be.
+        count: usize,
+        /// The next smaller number.
+        below: usize,
+        /// The next larger one.
+        above: usize,
+    },
+    /// A system for a validation or a measurement can't be set up.
     #[error("the system can't be set up: {0}")]
     SetUp(#[from] SetupError),
     /// None of the checkpoints of a run can be used.
@@ -102,6 +115,7 @@ impl ProgramError {
             ProgramError::Scenario(ScenarioError::Refused(_))
             | ProgramError::UnknownScenario { .. }
             | ProgramError::UnknownSubject { .. }
+            | ProgramError::CrystalCount { .. }
             | ProgramError::SetUp(_)
             | ProgramError::Unresumable { .. }
             | ProgramError::Sweep(_)

@@ -1,6 +1,9 @@
 //! Commands that only print.
 
+use std::fmt::Display;
 use std::io::{self, Write};
+
+use serde::Serialize;
 
 use crate::boundary::Cuboid;
 use crate::engine::Simulation;
@@ -21,6 +24,19 @@ pub(super) fn say(text: &str) -> Result<(), ProgramError> {
         }
         _ => Ok(()),
     }
+}
+
+/// Prints a result for a reader, or as one line of JSON.
+pub(super) fn say_result<T: Serialize + Display>(
+    result: &T,
+    as_json: bool,
+) -> Result<(), ProgramError> {
+    if !as_json {
+        return say(&result.to_string());
+    }
+    let line = serde_json::to_string(result)
+        .map_err(|error| ProgramError::io("standard output")(error.into()))?;
+    say(&line)
 }
 
 pub(super) fn presets() -> Result<u8, ProgramError> {

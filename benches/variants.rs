@@ -1,6 +1,7 @@
-//! Collisions per second of an elastic gas in equilibrium.
+//! Events per second of what `grainfall bench` does not measure: disks, and
+//! spheres of two sizes.
 //!
-//! cargo bench --bench gas
+//! cargo bench --bench variants
 
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 use grainfall::boundary::{Cuboid, Side};
@@ -10,18 +11,13 @@ use grainfall::engine::{Limits, Simulation};
 use grainfall::model::{Model, Parts};
 use grainfall::policy::Never;
 use grainfall::predict::Polynomial;
-use grainfall::setup::{Gas, seeded};
+use grainfall::setup::{Gas, Sizes, seeded};
 
 /// Collisions in one timed run.
 const EVENTS: u64 = 10_000;
 
-/// A gas of this many grains that has forgotten how it was made.
-fn gas<const D: usize>(count: usize, packing_fraction: f64) -> Simulation<impl Model<D>, D> {
-    let gas = Gas::<D> {
-        count,
-        packing_fraction,
-        ..Gas::default()
-    };
+/// A gas that has forgotten how it was made.
+fn in_equilibrium<const D: usize>(gas: Gas<D>) -> Simulation<impl Model<D>, D> {
     let (grains, lengths) = gas.grains(&mut seeded(1)).expect("a valid gas");
     let sides = std::array::from_fn(|axis| Side::periodic(lengths[axis]));
     let model = Parts {
@@ -32,18 +28,22 @@ fn gas<const D: usize>(count: usize, packing_fraction: f64) -> Simulation<impl M
         boundary: Cuboid::new(sides).expect("a valid box"),
     };
     let mut simulation = Simulation::new(model, grains).expect("a valid start");
-    simulation.run(&Limits::events(5 * count as u64), &mut ());
+    simulation.run(&Limits::events(5 * gas.count as u64), &mut ());
     simulation
 }
 
 /// Times collisions of one and the same gas: it is stationary, so each run is
 /// like the one before.
-fn measure<const D: usize>(criterion: &mut Criterion, cases: &[(usize, f64)]) {
-    let mut group = criterion.benchmark_group(format!("elastic gas, {D}D"));
+fn measure<const D: usize>(criterion: &mut Criterion, name: &str, sizes: Sizes, fractions: &[f64]) {
+    let mut group = criterion.benchmark_group(name);
     group.throughput(Throughput::Elements(EVENTS));
-    for &(count, packing_fraction) in cases {
-        let mut simulation = gas::<D>(count, packing_fraction);
-        let name = BenchmarkId::new(format!("phi {packing_fraction}"), count);
+    for &packing_fraction in fractions {
+        let mut simulation = in_equilibrium(Gas::<D> {
+            packing_fraction,
+            sizes,
+            ..Gas::default()
+        });
+        let name = BenchmarkId::new("phi", packing_fraction);
         group.bench_function(name, |bencher| {
             bencher.iter(|| {
                 let limits = Limits::events(simulation.counts().total() + EVENTS);
@@ -54,14 +54,18 @@ fn measure<const D: usize>(criterion: &mut Criterion, cases: &[(usize, f64)]) {
     group.finish();
 }
 
-fn spheres(criterion: &mut Criterion) {
-    let cases = [(1000, 0.1), (1000, 0.3), (1000, 0.5), (10_000, 0.3)];
-    measure::<3>(criterion, &cases);
-}
-
 fn disks(criterion: &mut Criterion) {
-    measure::<2>(criterion, &[(1000, 0.3), (1000, 0.6)]);
+    measure::<2>(criterion, "disks", Sizes::default(), &[0.3, 0.6]);
 }
 
-criterion_group!(benches, spheres, disks);
+fn mixture(criterion: &mut Criterion) {
+    let sizes = Sizes::Bimodal {
+        small: 1.0,
+        large: 3.0,
+        large_fraction: 0.1,
+    };
+    measure::<3>(criterion, "spheres of two sizes", sizes, &[0.3, 0.5]);
+}
+
+criterion_group!(benches, disks, mixture);
 criterion_main!(benches);
