@@ -223,7 +223,7 @@ impl PartialOrd for Time {
 
     #[inline]
     fn le(&self, other: &Self) -> bool {
-        !(other < self)
+        self.ticks < other.ticks || (self.ticks == other.ticks && self.rest <= other.rest)
     }
 
     #[inline]
@@ -233,7 +233,7 @@ impl PartialOrd for Time {
 
     #[inline]
     fn ge(&self, other: &Self) -> bool {
-        !(self < other)
+        other <= self
     }
 }
 

@@ -186,10 +186,10 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
         found.clear();
         found.extend_from_slice(self.world.near.list(particle));
         for other in &found {
-            if self.world.bodies[other.particle as usize].mode.is_mobile() {
-                if self.meet(other.particle, &other.seen_from(particle)) {
-                    self.enqueue(other.particle);
-                }
+            if self.world.bodies[other.particle as usize].mode.is_mobile()
+                && self.meet(other.particle, &other.seen_from(particle))
+            {
+                self.enqueue(other.particle);
             }
         }
         self.scratch = found;

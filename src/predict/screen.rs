@@ -24,11 +24,7 @@ const TINY: f64 = f64::MIN_POSITIVE;
 /// How far ahead something is said: up to the horizon, but not too far.
 #[inline(always)]
 fn near(horizon: f64, curved: bool) -> f64 {
-    if curved && !(horizon <= FAR) {
-        FAR
-    } else {
-        horizon
-    }
+    if curved { horizon.min(FAR) } else { horizon }
 }
 
 /// At least as small as c₃ t + c₄ t² gets up to `near`; `bent` is 4 c₄.

@@ -256,7 +256,7 @@ pub(super) fn measure(arguments: &DepositionArguments) -> Result<u8, ProgramErro
         }
         .into());
     }
-    let mut progress = Progress::new(false);
+    let mut progress = Progress::new(false, None);
     let (mut outcome, code) = run(&rain, window, &mut progress)?;
     if arguments.hash {
         let hash = hash(&rain, window, &mut progress)?;

@@ -310,7 +310,7 @@ pub(super) fn bytes_of(peak: Option<f64>, now: Option<f64>) -> String {
 
 pub(super) fn measure(arguments: &GasArguments) -> Result<u8, ProgramError> {
     let plan = Plan::of(arguments);
-    let mut progress = Progress::new(false);
+    let mut progress = Progress::new(false, None);
     let mut outcome = plan.run(&mut progress)?;
     if arguments.hash {
         let hash = plan.hash(&mut progress)?;

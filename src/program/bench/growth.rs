@@ -62,7 +62,7 @@ pub(super) fn measure(arguments: &GrowthArguments) -> Result<u8, ProgramError> {
             ..Limits::default()
         };
         let end = rain.last_landing().min(until.units());
-        let mut progress = Progress::new(false);
+        let mut progress = Progress::new(false, None);
         let (_, reason) = sampled(
             &mut simulation,
             arguments.step,

@@ -71,7 +71,7 @@ fn gases(arguments: &ScalingArguments, table: &mut Table) -> Result<(), ProgramE
             },
             repeats: REPEATS,
         };
-        let mut progress = Progress::new(false);
+        let mut progress = Progress::new(false, None);
         let outcome = plan.run(&mut progress)?;
         progress.finish();
         let cost = outcome.nanoseconds_per_collision;
@@ -103,7 +103,7 @@ fn heaps(arguments: &ScalingArguments, table: &mut Table) -> Result<(), ProgramE
     let events = if small { 5000 } else { 500_000 };
     let buried: &[usize] = if small { &BURIED[..3] } else { &BURIED };
 
-    let mut progress = Progress::new(false);
+    let mut progress = Progress::new(false, None);
     let mut growing = rain.simulation(&Memory::before())?;
     timed(
         &mut growing,
