@@ -14,6 +14,9 @@ use crate::time::Time;
 /// How long a bound on all speeds is kept before it is found anew, in √(d/g).
 const SPEED_WINDOW: f64 = 0.25;
 
+/// Leaves room for rounding.
+const ROUND: f64 = 1.0 - 1.0e-9;
+
 impl<M: Model<D>, const D: usize> Simulation<M, D> {
     /// How long until a grain's next collision if everyone flies on as now.
     pub(super) fn next_collision(&mut self, particle: u32) -> Option<f64> {
@@ -34,14 +37,22 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
         let farthest = self.shortest_period();
         let mut looked = None;
         loop {
+            // Surfaces farther apart than this do not meet before.
+            let mut near = self.nearing_soon(particle, first - start);
+            let mut scale = self.scale_at(first);
             for other in &found {
-                if self.distance_to(particle, other) > farthest {
+                let bodies = &self.world.bodies;
+                let sum = bodies[particle as usize].radius + bodies[other.particle as usize].radius;
+                let distance = self.distance_to(particle, other);
+                if distance > farthest || distance * ROUND > sum * scale + near {
                     continue;
                 }
                 if let Some(time) = self.pair_contact(particle, other.particle, other.turns, first)
                 {
                     first = time;
                     any = true;
+                    near = self.nearing_soon(particle, first - start);
+                    scale = self.scale_at(first);
                 }
             }
             // Nobody whose surface is farther away than this comes first.
@@ -122,6 +133,15 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
         }
         let own = self.world.flight(&self.model, particle).speed_bound(within);
         (own + self.speed_ceiling) * within
+    }
+
+    /// The same where it costs little: infinity for longer times.
+    fn nearing_soon(&mut self, particle: u32, within: f64) -> f64 {
+        if within > SPEED_WINDOW {
+            f64::INFINITY
+        } else {
+            self.nearing(particle, within)
+        }
     }
 
     /// A bound on the speeds of all grains from now on for a while.

@@ -124,9 +124,12 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
         let slots = &self.slots;
         let mut add = |answers: [f64; LANES], few: &[Found<D>]| {
             for (bound, found) in answers.into_iter().zip(few) {
-                // Later than that bound, the other finds it anyway. Written so
-                // that NaN is not later.
-                if bound > horizon || bound > slots[found.particle as usize].bound() - now {
+                // NaN says nothing, so it is not later than anything.
+                if bound == f64::INFINITY || bound > horizon {
+                    continue;
+                }
+                // Later than its own bound, the other finds it anyway.
+                if bound > slots[found.particle as usize].bound() - now {
                     continue;
                 }
                 candidates.push(Candidate {
