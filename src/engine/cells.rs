@@ -37,6 +37,8 @@ pub(super) struct Seat<const D: usize> {
     /// How far from there its surface may be, in d.
     pub(super) reach: f64,
     cell: [i32; D],
+    /// Whether that cell is an image of one of the grid.
+    astray: bool,
     next: u32,
     previous: u32,
 }
@@ -143,6 +145,7 @@ impl<const D: usize> Cells<D> {
             anchor: *position,
             reach: 0.0,
             cell,
+            astray: self.is_astray(&cell),
             next: NONE,
             previous: NONE,
         });
@@ -205,9 +208,16 @@ impl<const D: usize> Cells<D> {
         seat.reach = reach;
         if cell != self.seats[particle as usize].cell {
             self.unlink(particle);
-            self.seats[particle as usize].cell = cell;
+            let astray = self.is_astray(&cell);
+            let seat = &mut self.seats[particle as usize];
+            seat.cell = cell;
+            seat.astray = astray;
             self.link(particle);
         }
+    }
+
+    fn is_astray(&self, cell: &[i32; D]) -> bool {
+        (0..D).any(|axis| !(0..self.axes[axis].count).contains(&cell[axis]))
     }
 
     /// Tells the grid that `turns` periods have been taken off a grain's
@@ -217,6 +227,8 @@ impl<const D: usize> Cells<D> {
         let seat = &mut self.seats[particle as usize];
         seat.cell[axis] -= turns * count;
         seat.anchor[axis] -= f64::from(turns) * period.map_or(0.0, |period| period.length);
+        let cell = seat.cell;
+        self.seats[particle as usize].astray = self.is_astray(&cell);
     }
 
     /// Calls `visit` for every grain within `rings` cells of `particle`'s own,
@@ -247,19 +259,28 @@ impl<const D: usize> Cells<D> {
         }
         let mut at = low;
         loop {
-            let row = self.row(&at);
+            let mut turns = [0; D];
+            let mut row = 0;
+            for axis in 1..D {
+                let (cell, turned) = self.wrapped(at[axis], axis);
+                row += cell * self.axes[axis].stride;
+                turns[axis] = turned;
+            }
             for along in low[0]..=high[0] {
                 at[0] = along;
-                let mut other = self.heads[row + self.wrapped(along, 0)];
+                let (cell, turned) = self.wrapped(along, 0);
+                turns[0] = turned;
+                let mut other = self.heads[row + cell];
                 while other != NONE {
                     let seat = &self.seats[other as usize];
                     if other != particle {
-                        let mut turns = [0; D];
-                        if seat.cell != at {
-                            for axis in 0..D {
-                                turns[axis] = (at[axis] - seat.cell[axis]) / self.axes[axis].count;
-                            }
-                        }
+                        let turns = if seat.astray {
+                            std::array::from_fn(|axis| {
+                                (at[axis] - seat.cell[axis]) / self.axes[axis].count
+                            })
+                        } else {
+                            turns
+                        };
                         let found = Found {
                             particle: other,
                             turns,
@@ -282,35 +303,29 @@ impl<const D: usize> Cells<D> {
         }
     }
 
-    /// Index of the first cell of a row along the first axis.
+    /// The cell of the grid that a cell is an image of, and how many periods
+    /// away it is.
     #[inline]
-    fn row(&self, cell: &[i32; D]) -> usize {
-        (1..D)
-            .map(|axis| self.wrapped(cell[axis], axis) * self.axes[axis].stride)
-            .sum()
-    }
-
-    #[inline]
-    fn wrapped(&self, cell: i32, axis: usize) -> usize {
+    fn wrapped(&self, cell: i32, axis: usize) -> (usize, i32) {
         let count = self.axes[axis].count;
-        let cell = if cell < 0 {
-            cell + count
+        let (once, turns) = if cell < 0 {
+            (cell + count, -1)
         } else if cell >= count {
-            cell - count
+            (cell - count, 1)
         } else {
-            cell
+            (cell, 0)
         };
-        if (0..count).contains(&cell) {
-            cell as usize
+        if (0..count).contains(&once) {
+            (once as usize, turns)
         } else {
-            cell.rem_euclid(count) as usize
+            (cell.rem_euclid(count) as usize, cell.div_euclid(count))
         }
     }
 
     #[inline]
     fn index(&self, cell: &[i32; D]) -> usize {
         (0..D)
-            .map(|axis| self.wrapped(cell[axis], axis) * self.axes[axis].stride)
+            .map(|axis| self.wrapped(cell[axis], axis).0 * self.axes[axis].stride)
             .sum()
     }
 

@@ -15,7 +15,7 @@ mod bed;
 mod check;
 mod saved;
 
-pub(super) use bed::Bed;
+use bed::Bed;
 pub(super) use saved::SavedNeighbours;
 
 use crate::engine::cells::{Cells, Found};
@@ -50,7 +50,10 @@ struct Tie<const D: usize> {
     /// Whether the long leash suits it.
     lonely: bool,
     list: Vec<Found<D>>,
-    bed: Bed<D>,
+    /// Who lies still there, if anybody does.
+    bed: Option<Box<Bed<D>>>,
+    /// Whether the bed is that of the list as it is now.
+    divided: bool,
 }
 
 /// The grid and the lists.
@@ -172,12 +175,12 @@ impl<const D: usize> Neighbours<D> {
             let tie = &mut self.ties[other.particle as usize];
             if tie.leash > 0.0 {
                 tie.list.push(other.seen_from(particle));
-                tie.bed.mover_changed();
+                tie.mover_changed();
             }
         }
         let tie = &mut self.ties[particle as usize];
         tie.list = list;
-        tie.bed.spoil();
+        tie.spoil();
     }
 
     /// Forgets the list of a grain that has come to rest; those that move keep
@@ -186,10 +189,11 @@ impl<const D: usize> Neighbours<D> {
     pub(super) fn release(&mut self, particle: u32, position: &Vector<D>, radius: f64) {
         let tie = &mut self.ties[particle as usize];
         tie.leash = 0.0;
-        tie.bed = Bed::EMPTY;
+        tie.bed = None;
+        tie.divided = false;
         for other in std::mem::take(&mut tie.list) {
             let theirs = &mut self.ties[other.particle as usize];
-            theirs.bed.spoil();
+            theirs.spoil();
             let mut apart = self.cells.seat(other.particle).anchor - position;
             for (axis, turns) in other.turns.into_iter().enumerate() {
                 apart[axis] += f64::from(turns) * self.periods[axis];
@@ -208,7 +212,7 @@ impl<const D: usize> Neighbours<D> {
         self.cells.unwind(particle, axis, turns);
         let mut list = {
             let tie = &mut self.ties[particle as usize];
-            tie.bed.spoil();
+            tie.spoil();
             std::mem::take(&mut tie.list)
         };
         for place in 0..list.len() {
@@ -220,7 +224,7 @@ impl<const D: usize> Neighbours<D> {
             if list[..place].iter().any(|found| found.particle == other) {
                 continue;
             }
-            self.ties[other as usize].bed.spoil();
+            self.ties[other as usize].spoil();
             let theirs = &mut self.ties[other as usize].list;
             for found in theirs.iter_mut().filter(|found| found.particle == particle) {
                 found.turns[axis] += turns;
@@ -299,9 +303,9 @@ impl<const D: usize> Neighbours<D> {
             if let Some(place) = tie.list.iter().position(|found| *found == entry) {
                 tie.list.swap_remove(place);
                 if at_rest {
-                    tie.bed.spoil();
+                    tie.spoil();
                 } else {
-                    tie.bed.mover_changed();
+                    tie.mover_changed();
                 }
             }
         }
@@ -330,6 +334,7 @@ impl<const D: usize> Tie<D> {
         leash: 0.0,
         lonely: true,
         list: Vec::new(),
-        bed: Bed::EMPTY,
+        bed: None,
+        divided: false,
     };
 }

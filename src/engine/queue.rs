@@ -54,6 +54,8 @@ pub(super) struct EventQueue {
     origin: Time,
     /// Length of a slot.
     width: f64,
+    /// Slots in a unit of time.
+    per_time: f64,
     /// The slot that is in the heap; all earlier ones are empty.
     current: i64,
     /// Entries taken from the front since the calendar last turned.
@@ -62,7 +64,7 @@ pub(super) struct EventQueue {
 
 impl EventQueue {
     pub(super) fn new(capacity: usize, start: Time) -> Self {
-        let slots = (4 * capacity).next_power_of_two().clamp(256, 1 << 20);
+        let slots = (2 * capacity).next_power_of_two().clamp(256, 1 << 20);
         EventQueue {
             keys: Vec::with_capacity(capacity),
             places: Vec::with_capacity(capacity),
@@ -73,6 +75,7 @@ impl EventQueue {
             filed: 0,
             origin: start,
             width: 1.0 / slots as f64,
+            per_time: slots as f64,
             current: 0,
             served: 0,
         }
@@ -145,7 +148,7 @@ impl EventQueue {
 
     fn slot_of(&self, time: Time) -> i64 {
         // Saturates, for what lies far ahead or never comes.
-        ((time - self.origin) / self.width) as i64
+        ((time - self.origin) * self.per_time) as i64
     }
 
     fn file(&mut self, particle: u32) {
@@ -222,7 +225,7 @@ impl EventQueue {
         if self.current % self.slots() == 0 {
             let per_slot = self.served as f64 / self.slots() as f64;
             self.served = 0;
-            let width = if per_slot > 8.0 {
+            let width = if per_slot > 3.0 {
                 self.width * 0.25
             } else if per_slot < 0.25 {
                 self.width * 2.0
@@ -249,6 +252,7 @@ impl EventQueue {
         let start = self.keys.iter().map(|key| key.time).min();
         self.origin = start.unwrap_or(self.origin);
         self.width = width.clamp(1.0e-14, 1.0e6);
+        self.per_time = 1.0 / self.width;
         self.current = 0;
         self.filed = 0;
         self.heap.clear();

@@ -138,7 +138,9 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
                 });
             }
         };
-        for (resting, few) in bed.resting.iter().zip(bed.still.chunks(LANES)) {
+        let still = bed.map_or(&[][..], |bed| &bed.still);
+        let resting = bed.map_or(&[][..], |bed| &bed.resting);
+        for (resting, few) in resting.iter().zip(still.chunks(LANES)) {
             let nook = Nook {
                 own: &own,
                 place,

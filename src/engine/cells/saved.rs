@@ -97,6 +97,7 @@ impl<const D: usize> Cells<D> {
                 anchor: Vector::zeros(),
                 reach: 0.0,
                 cell: (*cell).into(),
+                astray: false,
                 next: NONE,
                 previous: NONE,
             });
@@ -106,6 +107,9 @@ impl<const D: usize> Cells<D> {
             heads: vec![NONE; stride],
             seats,
         };
+        for id in 0..count {
+            cells.seats[id].astray = cells.is_astray(&cells.seats[id].cell);
+        }
         let mut seated = vec![false; count];
         for &particle in &saved.order {
             match seated.get_mut(particle as usize) {

@@ -6,77 +6,49 @@
 
 use crate::engine::body::Body;
 use crate::engine::cells::Found;
-use crate::engine::neighbours::Neighbours;
+use crate::engine::neighbours::{Neighbours, Tie};
 use crate::model::{LANES, Resting};
 use crate::particle::Vector;
 
-/// A list, divided into those at rest and those that move.
+/// A list with somebody at rest on it, divided into those and the ones that
+/// move. A grain among these may have come to rest since; none of those at rest
+/// may have been moved.
 #[derive(Clone, Debug)]
 pub(in crate::engine) struct Bed<const D: usize> {
-    /// Whether this is the list as it is now. A grain among the movers may have
-    /// come to rest since; none of those at rest may have been moved.
-    fresh: bool,
     pub(in crate::engine) resting: Vec<Resting<D>>,
     /// Who lies there, in this order.
     pub(in crate::engine) still: Vec<Found<D>>,
-    /// Who moves; left empty if nobody lies there.
     movers: Vec<Found<D>>,
 }
 
 impl<const D: usize> Bed<D> {
-    pub(in crate::engine) const EMPTY: Bed<D> = Bed {
-        fresh: false,
-        resting: Vec::new(),
-        still: Vec::new(),
-        movers: Vec::new(),
-    };
-
-    /// The list has changed, or one of those at rest is going to.
-    #[inline]
-    pub(super) fn spoil(&mut self) {
-        self.fresh = false;
-    }
-
-    /// A grain that moves has come to the list or left it: if nobody there is at
-    /// rest, the list itself is all there is to know.
-    #[inline]
-    pub(super) fn mover_changed(&mut self) {
-        self.fresh &= self.resting.is_empty();
-    }
-
     fn make(
-        &mut self,
         list: &[Found<D>],
         anchor: &Vector<D>,
         radius: f64,
         periods: &[f64; D],
         bodies: &[Body<D>],
-    ) {
-        self.resting.clear();
-        self.still.clear();
-        self.movers.clear();
-        if !list
-            .iter()
-            .any(|found| bodies[found.particle as usize].still)
-        {
-            self.fresh = true;
-            return;
-        }
+    ) -> Self {
+        let mut bed = Bed {
+            resting: Vec::new(),
+            still: Vec::new(),
+            movers: Vec::new(),
+        };
         for found in list {
             let body = &bodies[found.particle as usize];
             if !body.still {
-                self.movers.push(*found);
+                bed.movers.push(*found);
                 continue;
             }
-            let lane = self.still.len() % LANES;
+            let lane = bed.still.len() % LANES;
             if lane == 0 {
-                self.resting.push(Resting {
+                bed.resting.push(Resting {
                     places: [[0.0; LANES]; D],
                     distances: [0.0; LANES],
                 });
             }
-            self.still.push(*found);
-            if let Some(last) = self.resting.last_mut() {
+            bed.still.push(*found);
+            if let Some(last) = bed.resting.last_mut() {
                 for axis in 0..D {
                     let image = f64::from(found.turns[axis]) * periods[axis];
                     last.places[axis][lane] = (body.position[axis] - anchor[axis]) + image;
@@ -84,31 +56,47 @@ impl<const D: usize> Bed<D> {
                 last.distances[lane] = radius + body.radius;
             }
         }
-        self.fresh = true;
+        bed
+    }
+}
+
+impl<const D: usize> Tie<D> {
+    /// The list has changed, or one of those at rest is going to.
+    #[inline]
+    pub(super) fn spoil(&mut self) {
+        self.divided = false;
+    }
+
+    /// A grain that moves has come to the list or left it: if nobody there is at
+    /// rest, the list itself is all there is to know.
+    #[inline]
+    pub(super) fn mover_changed(&mut self) {
+        self.divided &= self.bed.is_none();
     }
 }
 
 impl<const D: usize> Neighbours<D> {
-    /// The list of a grain, divided: those at rest, and those that move.
+    /// Those at rest on the list of a grain, if anybody is, and those that move.
     #[inline]
     pub(in crate::engine) fn bed(
         &mut self,
         particle: u32,
         bodies: &[Body<D>],
-    ) -> (&Bed<D>, &[Found<D>]) {
+    ) -> (Option<&Bed<D>>, &[Found<D>]) {
         let tie = &mut self.ties[particle as usize];
-        if !tie.bed.fresh {
-            let radius = bodies[particle as usize].radius;
-            let anchor = &self.cells.seat(particle).anchor;
-            tie.bed
-                .make(&tie.list, anchor, radius, &self.periods, bodies);
+        if !tie.divided {
+            let is_still = |found: &Found<D>| bodies[found.particle as usize].still;
+            tie.bed = tie.list.iter().any(is_still).then(|| {
+                let radius = bodies[particle as usize].radius;
+                let anchor = &self.cells.seat(particle).anchor;
+                Box::new(Bed::make(&tie.list, anchor, radius, &self.periods, bodies))
+            });
+            tie.divided = true;
         }
-        let movers = if tie.bed.resting.is_empty() {
-            &tie.list
-        } else {
-            &tie.bed.movers
-        };
-        (&tie.bed, movers)
+        match &tie.bed {
+            Some(bed) => (Some(bed), &bed.movers),
+            None => (None, &tie.list),
+        }
     }
 
     /// The place that a grain is tied to.
@@ -124,16 +112,15 @@ impl<const D: usize> Neighbours<D> {
         bodies: &[Body<D>],
     ) -> Result<(), String> {
         let tie = &self.ties[particle as usize];
-        if !tie.bed.fresh {
+        let Some(bed) = tie.bed.as_ref().filter(|_| tie.divided) else {
             return Ok(());
-        }
-        let divided = tie.bed.still.len() + tie.bed.movers.len();
-        if divided != tie.list.len() && !tie.bed.still.is_empty() {
+        };
+        if bed.still.len() + bed.movers.len() != tie.list.len() {
             return Err(format!("the bed of grain {particle} is not its list"));
         }
-        for (place, found) in tie.bed.still.iter().enumerate() {
+        for (place, found) in bed.still.iter().enumerate() {
             let body = &bodies[found.particle as usize];
-            let (few, lane) = (&tie.bed.resting[place / LANES], place % LANES);
+            let (few, lane) = (&bed.resting[place / LANES], place % LANES);
             for axis in 0..D {
                 let image = f64::from(found.turns[axis]) * self.periods[axis];
                 let apart = body.position[axis] + image - self.anchor(particle)[axis];

@@ -4,7 +4,7 @@ use nalgebra::SVector;
 use serde::{Deserialize, Serialize};
 
 use crate::engine::cells::{Cells, Found, SavedCells};
-use crate::engine::neighbours::{Bed, Neighbours, Tie};
+use crate::engine::neighbours::{Neighbours, Tie};
 use crate::model::Boundary;
 use crate::particle::Vector;
 
@@ -89,7 +89,8 @@ impl<const D: usize> Neighbours<D> {
                 leash: tie.leash,
                 lonely: tie.lonely,
                 list,
-                bed: Bed::EMPTY,
+                bed: None,
+                divided: false,
             });
         }
         let mut cells = Cells::restore(boundary, &saved.cells, count)?;
