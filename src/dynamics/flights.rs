@@ -41,7 +41,7 @@ impl<const D: usize> Flight<D> for Straight<D> {
 
     #[inline]
     fn speed_bound(&self, _within: f64) -> f64 {
-        self.velocity.norm()
+        self.velocity.norm_squared().sqrt()
     }
 
     #[inline]
@@ -102,7 +102,7 @@ impl<const D: usize> Flight<D> for Parabola<D> {
 
     #[inline]
     fn speed_bound(&self, within: f64) -> f64 {
-        self.velocity.norm() + self.acceleration.norm() * within
+        self.velocity.norm_squared().sqrt() + self.acceleration.norm_squared().sqrt() * within
     }
 
     #[inline]

@@ -159,7 +159,7 @@ impl<const D: usize> World<D> {
             }
         }
         // Another image is a whole period away, this one a rounding.
-        (image.norm() < 0.1 * self.largest).then_some((other, offset))
+        (image.norm_squared().sqrt() < 0.1 * self.largest).then_some((other, offset))
     }
 
     /// From one grain to the nearest image of another, now.

@@ -106,7 +106,7 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
             let gained = fast
                 .iter()
                 .zip(&resting)
-                .map(|(fast, rest)| (fast - rest).norm())
+                .map(|(fast, rest)| (fast - rest).norm_squared().sqrt())
                 .fold(0.0, f64::max);
             if gained > most {
                 exit *= most / gained;
@@ -114,7 +114,7 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
             }
         }
         // Where contacts work against each other some grain cannot leave.
-        let caught = sleeps && leaving.is_none() && resting[0].norm() <= most;
+        let caught = sleeps && leaving.is_none() && resting[0].norm_squared().sqrt() <= most;
         let after = leaving.unwrap_or(resting);
         let mut disturbed = Vec::new();
         for ((&member, velocity), was) in cluster.members.iter().zip(after).zip(before) {
@@ -156,8 +156,10 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
             return true;
         }
         let gravity = self.model.dynamics().gravity(now);
-        let hurried = lasted * gravity.norm() < HURRY * exit * f64::from(CONFINED);
-        let held = |fall: Vec<Vector<D>>| fall[0].norm() < HELD * gravity.norm();
+        let hurried = lasted * gravity.norm_squared().sqrt() < HURRY * exit * f64::from(CONFINED);
+        let held = |fall: Vec<Vector<D>>| {
+            fall[0].norm_squared().sqrt() < HELD * gravity.norm_squared().sqrt()
+        };
         hurried && project(&[gravity], &bars, 0.0).is_some_and(held)
     }
 

@@ -32,7 +32,7 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
         let mut two = self.world.particle_now(&self.model, b);
         // The image of this moment, not the one of the prediction.
         let apart = self.world.displacement(&self.model, &two, &one);
-        let distance = apart.norm();
+        let distance = apart.norm_squared().sqrt();
         let normal = apart / distance;
         let stored_position = two.position;
         two.position = one.position - apart;

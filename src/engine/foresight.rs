@@ -99,7 +99,7 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
                 there[axis] += f64::from(other.turns[axis]) * period.length;
             }
         }
-        (there - here).norm()
+        (there - here).norm_squared().sqrt()
     }
 
     fn find_within(&self, particle: u32, distance: f64, found: &mut Vec<Found<D>>) {

@@ -129,7 +129,7 @@ impl<const D: usize> Neighbours<D> {
     /// far already.
     pub(super) fn slack(&self, particle: u32, position: &Vector<D>) -> f64 {
         let tie = &self.ties[particle as usize];
-        ROUND * tie.leash - (position - self.anchor(particle)).norm()
+        ROUND * tie.leash - (position - self.anchor(particle)).norm_squared().sqrt()
     }
 
     /// Whether little enough slack is left to make the list anew.
@@ -147,7 +147,7 @@ impl<const D: usize> Neighbours<D> {
         radius: f64,
     ) {
         self.untie_partners(particle);
-        let speed = velocity.norm();
+        let speed = velocity.norm_squared().sqrt();
         let mut list = std::mem::take(&mut self.ties[particle as usize].list);
         loop {
             let short = SHORT_LEASH * self.largest;

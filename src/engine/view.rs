@@ -41,7 +41,7 @@ impl<M: Model<D>, const D: usize> Surroundings<D> for View<'_, M, D> {
                 return;
             };
             let contact = 0.5 * (centre.diameter + other.diameter);
-            let relative_distance = offset.norm() / contact;
+            let relative_distance = offset.norm_squared().sqrt() / contact;
             if relative_distance < range {
                 visit(Neighbour {
                     id: ParticleId(found.particle),

@@ -73,7 +73,9 @@ impl<const D: usize> Impact<D> {
     /// Speed of the arriving grain relative to the ground, in √(gd).
     #[must_use]
     pub fn arriving_speed(&self) -> f64 {
-        (self.particle.velocity - self.ground_velocity).norm()
+        (self.particle.velocity - self.ground_velocity)
+            .norm_squared()
+            .sqrt()
     }
 
     /// The obstacle is a frozen or fixed grain.

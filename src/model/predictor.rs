@@ -112,7 +112,7 @@ const ROUND: f64 = 1.0e-12;
 
 /// How long it takes at least until two centres are that near.
 fn wait<const D: usize>(apart: &Vector<D>, distance: f64, closing: f64) -> f64 {
-    let gap = apart.norm() * (1.0 - ROUND) - distance;
+    let gap = apart.norm_squared().sqrt() * (1.0 - ROUND) - distance;
     let wait = gap / closing * (1.0 - ROUND);
     // Not certain of NaN either.
     if wait > 0.0 { wait } else { 0.0 }

@@ -90,6 +90,6 @@ impl<const D: usize> Observer<D> for CollisionalTransfer {
             after.particle(occurrence.particle).radius() + after.particle(other).radius();
         self.collisions += 1;
         // The momentum goes along the line of centres.
-        self.virial += distance * occurrence.impulse.norm();
+        self.virial += distance * occurrence.impulse.norm_squared().sqrt();
     }
 }

@@ -184,7 +184,7 @@ impl SlowDescent {
     ) -> Waking<D> {
         let still_stored = memory
             .asleep
-            .filter(|asleep| now - asleep.since < self.store_time(gravity.norm()));
+            .filter(|asleep| now - asleep.since < self.store_time(gravity.norm_squared().sqrt()));
         match (still_stored, self.energy_store) {
             (Some(asleep), EnergyStore::VelocityBefore) => {
                 Waking::with_velocity(ground + asleep.velocity)
@@ -274,8 +274,8 @@ impl<const D: usize> StatePolicy<D> for SlowDescent {
         let arriving = impact.particle.velocity - impact.ground_velocity;
         let leaving = after - impact.ground_velocity;
         let speed = match self.speed_read {
-            SpeedRead::Arriving => arriving.norm(),
-            SpeedRead::Leaving => leaving.norm(),
+            SpeedRead::Arriving => arriving.norm_squared().sqrt(),
+            SpeedRead::Leaving => leaving.norm_squared().sqrt(),
         };
         let on_support = self.is_on_support(impact);
         let previous = memory.previous_speed;
@@ -320,7 +320,7 @@ impl<const D: usize> StatePolicy<D> for SlowDescent {
     ) -> WakeDecision<D> {
         let speed = match self.wake_read {
             WakeRead::Normal => impact.closing_speed(),
-            WakeRead::Relative => impact.relative_velocity().norm(),
+            WakeRead::Relative => impact.relative_velocity().norm_squared().sqrt(),
         };
         let reason = Reason::new("hit faster than V_wakeup", speed, self.wake_speed);
         if speed <= self.wake_speed {
@@ -415,7 +415,9 @@ impl<const D: usize> StatePolicy<D> for SlowDescent {
                 if self.comparison == Comparison::AnyCollision {
                     memory.previous_speed = Some(match self.speed_read {
                         SpeedRead::Arriving => impact.arriving_speed(),
-                        SpeedRead::Leaving => (after - impact.ground_velocity).norm(),
+                        SpeedRead::Leaving => {
+                            (after - impact.ground_velocity).norm_squared().sqrt()
+                        }
                     });
                 }
             }

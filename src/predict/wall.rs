@@ -131,7 +131,7 @@ pub(super) fn general<const D: usize, F: PolynomialFlight<D>, W: Wall<D>>(
         horizon,
         ..
     } = *encounter;
-    let acceleration = flight.acceleration().norm();
+    let acceleration = flight.acceleration().norm_squared().sqrt();
     let mut t = 0.0;
     for count in 0..MOST_STEPS {
         let (position, velocity, now) = (flight.position(t), flight.velocity(t), since + t);
@@ -139,7 +139,7 @@ pub(super) fn general<const D: usize, F: PolynomialFlight<D>, W: Wall<D>>(
         let distance = wall.distance(&position, now);
         let normal = wall.normal(&position, now);
         let opening = normal.dot(&(velocity - wall.velocity(&position, now))) - growth;
-        let rounding = ROUNDING * (position.norm() + distance.abs() + radius);
+        let rounding = ROUNDING * (position.norm_squared().sqrt() + distance.abs() + radius);
         let gap = if count == 0 && encounter.touching {
             0.0
         } else {
@@ -150,7 +150,7 @@ pub(super) fn general<const D: usize, F: PolynomialFlight<D>, W: Wall<D>>(
         }
         // So much there is of it at least.
         let sure = gap - rounding;
-        let speed = velocity.norm() + wall_speed;
+        let speed = velocity.norm_squared().sqrt() + wall_speed;
         let mut advance = covered(sure, speed + growth.max(0.0), acceleration);
         // The curvature is known out to one diameter; beyond 1 d it may grow
         // inwards like that of parallel surfaces.
