@@ -14,8 +14,6 @@ pub(super) use saved::SavedCells;
 use crate::model::{Boundary, Period};
 use crate::particle::Vector;
 
-const NONE: u32 = u32::MAX;
-
 /// Edges are longer than what they must cover by this factor, for rounding.
 const SLACK: f64 = 1.0 + 1.0e-9;
 
@@ -29,7 +27,7 @@ struct Axis {
     period: Option<Period>,
 }
 
-/// A grain's place in the grid and in its cell's list.
+/// A grain's place in the grid.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Seat<const D: usize> {
     /// The place it is filed under, in d.
@@ -39,15 +37,14 @@ pub(super) struct Seat<const D: usize> {
     cell: [i32; D],
     /// Whether that cell is an image of one of the grid.
     astray: bool,
-    next: u32,
-    previous: u32,
 }
 
 /// The grid and who is where.
 #[derive(Clone, Debug)]
 pub(super) struct Cells<const D: usize> {
     axes: [Axis; D],
-    heads: Vec<u32>,
+    /// Who is in each cell of the grid.
+    rooms: Vec<Vec<u32>>,
     seats: Vec<Seat<D>>,
 }
 
@@ -75,7 +72,7 @@ impl<const D: usize> Cells<D> {
     pub(super) fn new<B: Boundary<D>>(boundary: &B, positions: &[Vector<D>], reach: f64) -> Self {
         let (low, span) = extents(boundary, positions, reach);
         // Not many more cells than grains, however thin the gas.
-        let most_cells = 16.0 * positions.len() as f64 + 4096.0;
+        let most_cells = 4.0 * positions.len() as f64 + 4096.0;
         let mut edge = reach * SLACK;
         let cells_of = |edge: f64, axis: usize| (span[axis] / edge).floor().clamp(1.0, 1.0e9);
         while (0..D).map(|axis| cells_of(edge, axis)).product::<f64>() > most_cells {
@@ -103,7 +100,7 @@ impl<const D: usize> Cells<D> {
         });
         let mut cells = Cells {
             axes,
-            heads: vec![NONE; stride],
+            rooms: vec![Vec::new(); stride],
             seats: Vec::with_capacity(positions.len()),
         };
         for position in positions {
@@ -146,8 +143,6 @@ impl<const D: usize> Cells<D> {
             reach: 0.0,
             cell,
             astray: self.is_astray(&cell),
-            next: NONE,
-            previous: NONE,
         });
         self.link(particle);
     }
@@ -270,10 +265,9 @@ impl<const D: usize> Cells<D> {
                 at[0] = along;
                 let (cell, turned) = self.wrapped(along, 0);
                 turns[0] = turned;
-                let mut other = self.heads[row + cell];
-                while other != NONE {
-                    let seat = &self.seats[other as usize];
+                for &other in &self.rooms[row + cell] {
                     if other != particle {
+                        let seat = &self.seats[other as usize];
                         let turns = if seat.astray {
                             std::array::from_fn(|axis| {
                                 (at[axis] - seat.cell[axis]) / self.axes[axis].count
@@ -287,7 +281,6 @@ impl<const D: usize> Cells<D> {
                         };
                         visit(found, seat);
                     }
-                    other = seat.next;
                 }
             }
             // The next row, the second axis running fastest.
@@ -335,26 +328,14 @@ impl<const D: usize> Cells<D> {
 
     fn link(&mut self, particle: u32) {
         let index = self.index_of(particle);
-        let head = self.heads[index];
-        let seat = &mut self.seats[particle as usize];
-        seat.next = head;
-        seat.previous = NONE;
-        if head != NONE {
-            self.seats[head as usize].previous = particle;
-        }
-        self.heads[index] = particle;
+        self.rooms[index].push(particle);
     }
 
     fn unlink(&mut self, particle: u32) {
-        let Seat { next, previous, .. } = self.seats[particle as usize];
-        if next != NONE {
-            self.seats[next as usize].previous = previous;
-        }
-        if previous == NONE {
-            let index = self.index_of(particle);
-            self.heads[index] = next;
-        } else {
-            self.seats[previous as usize].next = next;
+        let index = self.index_of(particle);
+        let room = &mut self.rooms[index];
+        if let Some(place) = room.iter().position(|other| *other == particle) {
+            room.swap_remove(place);
         }
     }
 }

@@ -1,13 +1,13 @@
 //! Whether the grid's book-keeping holds.
 
-use crate::engine::cells::{Cells, NONE};
+use crate::engine::cells::Cells;
 
 /// How far beyond the edge of its cell, over that edge, rounding may put a
 /// grain: periods are taken off its place and off its cell separately.
 const ROUND: f64 = 1.0e-9;
 
 impl<const D: usize> Cells<D> {
-    /// A grain has to sit in the cell of its anchor, and on that cell's list.
+    /// A grain has to sit in the cell of its anchor, and in that cell's room.
     pub(in crate::engine) fn check_seat(&self, particle: u32) -> Result<(), String> {
         let seat = &self.seats[particle as usize];
         let anchor = &seat.anchor;
@@ -24,15 +24,7 @@ impl<const D: usize> Cells<D> {
                 ));
             }
         }
-        let follows = match seat.previous {
-            NONE => self.heads[self.index_of(particle)] == particle,
-            previous => {
-                self.seats[previous as usize].next == particle
-                    && self.index_of(previous) == self.index_of(particle)
-            }
-        };
-        let precedes = seat.next == NONE || self.seats[seat.next as usize].previous == particle;
-        if !follows || !precedes {
+        if !self.rooms[self.index_of(particle)].contains(&particle) {
             return Err(format!("grain {particle} is not linked in its cell"));
         }
         Ok(())

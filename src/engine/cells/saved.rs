@@ -4,7 +4,7 @@
 use nalgebra::SVector;
 use serde::{Deserialize, Serialize};
 
-use crate::engine::cells::{Axis, Cells, NONE, Seat};
+use crate::engine::cells::{Axis, Cells, Seat};
 use crate::model::Boundary;
 use crate::particle::Vector;
 
@@ -19,23 +19,12 @@ pub(in crate::engine) struct SavedCells<const D: usize> {
     axes: Vec<(f64, f64, i32)>,
     /// By grain.
     cells: Vec<SVector<i32, D>>,
-    /// In which order the grains have to be seated: cell by cell, the last of
-    /// each first.
+    /// In which order the grains have to be seated: cell by cell.
     order: Vec<u32>,
 }
 
 impl<const D: usize> Cells<D> {
     pub(in crate::engine) fn save(&self) -> SavedCells<D> {
-        let mut order = Vec::with_capacity(self.seats.len());
-        for &head in &self.heads {
-            let from = order.len();
-            let mut particle = head;
-            while particle != NONE {
-                order.push(particle);
-                particle = self.seats[particle as usize].next;
-            }
-            order[from..].reverse();
-        }
         SavedCells {
             axes: self
                 .axes
@@ -47,7 +36,7 @@ impl<const D: usize> Cells<D> {
                 .iter()
                 .map(|seat| SVector::from(seat.cell))
                 .collect(),
-            order,
+            order: self.rooms.iter().flatten().copied().collect(),
         }
     }
 
@@ -84,7 +73,7 @@ impl<const D: usize> Cells<D> {
             stride = stride
                 .checked_mul(along as usize)
                 // As many as a grid is ever given.
-                .filter(|cells| *cells <= 16 * count + 4096)
+                .filter(|cells| *cells <= 4 * count + 4096)
                 .ok_or("the grid has too many cells")?;
         }
         let axes = <[Axis; D]>::try_from(axes).map_err(|_| "the grid has too few axes")?;
@@ -98,13 +87,11 @@ impl<const D: usize> Cells<D> {
                 reach: 0.0,
                 cell: (*cell).into(),
                 astray: false,
-                next: NONE,
-                previous: NONE,
             });
         }
         let mut cells = Cells {
             axes,
-            heads: vec![NONE; stride],
+            rooms: vec![Vec::new(); stride],
             seats,
         };
         for id in 0..count {
