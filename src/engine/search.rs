@@ -26,6 +26,10 @@ use crate::time::Time;
 /// just collided are in the image in which they did.
 const IMAGE: f64 = 1.0 + 1.0e-6;
 
+/// How often a grain's way is followed on for as long as it is certain to stay
+/// on its leash.
+const MOST_STEPS: usize = 16;
+
 /// Somebody who may come first.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Candidate<const D: usize> {
@@ -397,22 +401,37 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
         if flight.is_at_rest() {
             return;
         }
-        let after = self.world.clock - self.world.bodies[particle as usize].since;
-        let flight = flight.advanced(after);
-        let slack = self.world.near.slack(particle, &flight.start()).max(0.0);
-        // Within a time t it goes no farther than its top speed then times t.
-        let safe = |window: f64| f64::min(window, slack / flight.speed_bound(window));
-        let mut certain = safe(1.0);
-        // Slower at first, it may be certain for longer.
-        let mut longer = safe(2.0 * certain);
-        // A slow grain needs looking after no more often than a fast one needs
-        // in the time it takes to go as far.
-        while longer > certain {
-            certain = longer;
-            if certain < 1.0 {
+        let now = self.world.clock;
+        let known = slot.bound() - now;
+        let near = &self.world.near;
+        let flight = flight.advanced(now - self.world.bodies[particle as usize].since);
+        let mut slack = near.slack(particle, &flight.start()).max(0.0);
+        // From a time on it goes no farther within another than its top speed up
+        // to the end of both times that other.
+        let step = |from: f64, slack: f64| {
+            let safe = |window: f64| f64::min(window, slack / flight.speed_bound(from + window));
+            let mut certain = safe(1.0);
+            let mut longer = safe(2.0 * certain);
+            // A slow grain needs looking after no more often than a fast one
+            // needs in the time it takes to go as far.
+            while longer > certain && certain >= 1.0 {
+                certain = longer;
+                longer = safe(2.0 * certain);
+            }
+            certain.max(longer)
+        };
+        let mut certain = step(0.0, slack);
+        // An event of its own comes first, or it has to be tied anew then, or
+        // that is very long.
+        for _ in 0..MOST_STEPS {
+            if certain > known {
                 break;
             }
-            longer = safe(2.0 * certain);
+            slack = near.slack(particle, &flight.position(certain));
+            if near.is_stretched(particle, slack) {
+                break;
+            }
+            certain += step(certain, slack);
         }
         slot.renewal = self.world.clock + certain;
     }
