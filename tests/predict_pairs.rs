@@ -339,11 +339,12 @@ fn meeting<const D: usize>(
     (relative, time)
 }
 
-/// First contact of two grains, by wide arithmetic.
+/// First contact of two grains, by wide arithmetic; infinity if it could not
+/// tell and would have to be asked again.
 fn contact<const D: usize>(relative: &Relative<D>, touching: bool) -> f64 {
     match first_contact::<DoubleDouble, D>(relative, touching, f64::INFINITY) {
-        Descent::Never => f64::INFINITY,
-        Descent::At(time) | Descent::NotBefore(time) => time.to_f64().max(0.0),
+        Descent::At(time) => time.to_f64(),
+        Descent::Never | Descent::NotBefore(_) => f64::INFINITY,
     }
 }
 
