@@ -267,3 +267,37 @@ fn a_box_may_be_empty() {
         StopReason::NothingLeft
     );
 }
+
+/// A grain that has met nobody for a very long time grazes a fixed one: how far
+/// its place now has been rounded must not hide that.
+#[test]
+fn a_graze_after_a_long_flight_is_noticed() {
+    let edge = 16.0;
+    let slope = 1.0 + libm::exp2(-20.0);
+    let depth = 1.0e-12;
+    for mode in [Mode::Fixed, Mode::Normal] {
+        for passes in 8_192..8_196 {
+            // There, exactly, the flight goes by.
+            let along = edge * f64::from(passes);
+            let normal = Vector::<2>::new(-slope, 1.0).normalize();
+            let place =
+                Vector::<2>::new(8.0, 8.0 + (along * slope) % edge) + normal * (1.0 - depth);
+            let speed = libm::exp2(-10.0);
+            let grains = vec![
+                Particle::new(
+                    Vector::<2>::new(8.0, 8.0),
+                    speed * Vector::<2>::new(1.0, slope),
+                ),
+                Particle::new(place, Vector::zeros()).with_mode(mode),
+            ];
+            let side = Side::Periodic {
+                origin: 0.0,
+                length: edge,
+            };
+            let model = elastic(ForceFree, Cuboid::new([side; 2]).unwrap());
+            let mut simulation = Simulation::new(model, grains).unwrap();
+            let times = contacts_up_to(&mut simulation, (along + 4.0) / speed);
+            assert_eq!(times.len(), 1, "after {passes}, {mode:?}");
+        }
+    }
+}

@@ -121,13 +121,17 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
             0.0
         };
         let body = &bodies[particle as usize];
-        let own = flight_of(model, particle, body).advanced(now - body.since);
+        let flown = now - body.since;
+        let own = flight_of(model, particle, body).advanced(flown);
+        // Where it is now is not known well enough to leave anybody out.
+        let unsure = flown > LONG_AGO;
         let horizon = self.slots[particle as usize].contact - now;
         let place = own.start() - near.anchor(particle);
         let (bed, movers) = near.bed(particle, bodies);
         let slots = &self.slots;
         let mut add = |answers: [f64; LANES], few: &[Found<D>]| {
             for (bound, found) in answers.into_iter().zip(few) {
+                let bound = if unsure { 0.0 } else { bound };
                 // NaN says nothing, so it is not later than anything.
                 if bound == f64::INFINITY || bound > horizon {
                     continue;
