@@ -39,8 +39,9 @@ pub(super) struct World<const D: usize> {
     /// Largest diameter at t = 0, in d.
     pub(super) largest: f64,
     pub(super) ledger: Ledger,
-    /// How far off, in d, the computed position of any grain may be whose last
-    /// event is not [`LONG_AGO`].
+    /// How far off, in d, the computed position of a grain may be for it to
+    /// count as known: more than that of any whose last event is not
+    /// [`LONG_AGO`].
     pub(super) blur: f64,
 }
 
@@ -51,13 +52,19 @@ pub(super) const LONG_AGO: f64 = 16.0;
 /// Rounding of a position, over all lengths that it is made of: 64 u.
 const ROUND: f64 = 32.0 * f64::EPSILON;
 
+/// A bound on how far off a position is, computed `after` the start of a flight.
+#[inline]
+fn rounding<F: Flight<D>, const D: usize>(flight: &F, after: f64) -> f64 {
+    ROUND * (flight.start().amax() + flight.speed_bound(after) * after)
+}
+
 impl<const D: usize> World<D> {
-    /// Keeps the bound on rounding true for a grain whose state is new.
+    /// Keeps the bound on rounding true for a grain whose state is new, with as
+    /// much again for those that fly on undisturbed.
     #[inline]
     pub(super) fn keep_blur<M: Model<D>>(&mut self, model: &M, particle: u32) {
         let flight = self.flight(model, particle);
-        let span = flight.start().amax() + flight.speed_bound(LONG_AGO) * LONG_AGO;
-        self.blur = self.blur.max(ROUND * span);
+        self.blur = self.blur.max(2.0 * rounding(&flight, LONG_AGO));
     }
 
     /// The flight of a grain from its last event on.
@@ -204,4 +211,19 @@ pub(super) fn scale_at<M: Model<D>, const D: usize>(model: &M, time: Time) -> f6
     } else {
         1.0
     }
+}
+
+/// Whether a grain's position, `after` its last event, is known well enough for
+/// bounds to be told from it.
+#[inline]
+pub(super) fn is_known<M: Model<D>, const D: usize>(
+    model: &M,
+    particle: u32,
+    body: &Body<D>,
+    after: f64,
+    blur: f64,
+) -> bool {
+    (0.0..=LONG_AGO).contains(&after)
+        || body.still
+        || (after > 0.0 && rounding(&flight_of(model, particle, body), after) <= blur)
 }

@@ -292,7 +292,9 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
     ) {
         let one = self.world.particle_now(&self.model, particle);
         let largest = self.world.largest * self.scale_at(self.world.clock);
-        let farthest = one.radius() + 0.5 * largest + tolerance;
+        // However small they are, their surfaces are no farther apart than this.
+        let margin = tolerance.sqrt();
+        let farthest = one.radius() + 0.5 * largest + margin;
         let mut touched = Vec::new();
         let mut look = |found: &Found<D>| {
             let Some((other, offset)) = self.world.nearest(&self.model, &one, found) else {
@@ -305,7 +307,7 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
             }
         };
         let near = &self.world.near;
-        if near.slack(particle, &one.position) > tolerance {
+        if near.slack(particle, &one.position) > margin {
             near.list(particle).iter().for_each(look);
         } else {
             near.for_each_within(particle, farthest, |found| look(&found));

@@ -12,7 +12,7 @@
 //! on when it is asked for: it is always counted from the later of their last
 //! events, and the one with the smaller id comes first.
 
-use crate::engine::body::{LONG_AGO, World, flight_of, scale_at};
+use crate::engine::body::{LONG_AGO, World, flight_of, is_known, scale_at};
 use crate::engine::cells::Found;
 use crate::engine::simulation::Simulation;
 use crate::engine::slot::{Partner, contact_key};
@@ -124,7 +124,7 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
         let flown = now - body.since;
         let own = flight_of(model, particle, body).advanced(flown);
         // Where it is now is not known well enough to leave anybody out.
-        let unsure = flown > LONG_AGO;
+        let unsure = !is_known(model, particle, body, flown, blur);
         let horizon = self.slots[particle as usize].contact - now;
         let place = own.start() - near.anchor(particle);
         let (bed, movers) = near.bed(particle, bodies);
@@ -176,10 +176,11 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
             };
             let flight = |lane: usize| flight_of(model, found[lane].particle, theirs[lane]);
             let mut answers = model.predictor().not_before(&own, flight, &crowd);
-            if after.iter().any(|after| *after > LONG_AGO) {
-                for lane in 0..LANES {
-                    if after[lane] > LONG_AGO && !theirs[lane].still {
-                        answers[lane] = 0.0;
+            if after.iter().any(|after| !(0.0..=LONG_AGO).contains(after)) {
+                for (lane, answer) in answers.iter_mut().enumerate() {
+                    let id = found[lane].particle;
+                    if !is_known(model, id, theirs[lane], after[lane], blur) {
+                        *answer = 0.0;
                     }
                 }
             }

@@ -144,6 +144,7 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
                 allowed: "a grain inserted during a run may not be larger than all before",
             });
         }
+        let blur = self.world.blur;
         self.store(particle);
         let position = self.world.bodies[index as usize].position;
         self.world.near.add(position);
@@ -152,6 +153,7 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
         self.slots.push(Slot::EMPTY);
         if let Err(error) = self.refuse_contacts(index) {
             self.forget_last();
+            self.world.blur = blur;
             return Err(error);
         }
         // Even if it is at rest, for a moment: that puts it on the lists of
