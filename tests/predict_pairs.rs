@@ -445,7 +445,7 @@ fn resting<const D: usize, F: PolynomialFlight<D>>(
         distances: [one.distance; LANES],
     };
     let mut contacts = [0.0; LANES];
-    for lane in 0..LANES {
+    for (lane, meets) in contacts.iter_mut().enumerate() {
         let mut relative = one;
         if lane > 0 {
             relative.offset += numbers.vector::<D>() * numbers.small(-16.0);
@@ -454,7 +454,7 @@ fn resting<const D: usize, F: PolynomialFlight<D>>(
             resting.places[axis][lane] = relative.offset[axis];
         }
         relative.growth = one.distance * growth;
-        contacts[lane] = contact(&relative, false);
+        *meets = contact(&relative, false);
     }
     let nook = Nook {
         own: &own,

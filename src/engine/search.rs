@@ -123,15 +123,18 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
         let body = &bodies[particle as usize];
         let flown = now - body.since;
         let own = flight_of(model, particle, body).advanced(flown);
-        // Where it is now is not known well enough to leave anybody out.
-        let unsure = !is_known(model, particle, body, flown, blur);
+        if !(0.0..=LONG_AGO).contains(&flown) && !is_known(model, particle, body, flown, blur) {
+            // Where it is now is not known well enough to leave anybody out.
+            let all = near.list(particle).iter();
+            candidates.extend(all.map(|&found| Candidate { bound: 0.0, found }));
+            return;
+        }
         let horizon = self.slots[particle as usize].contact - now;
         let place = own.start() - near.anchor(particle);
         let (bed, movers) = near.bed(particle, bodies);
         let slots = &self.slots;
         let mut add = |answers: [f64; LANES], few: &[Found<D>]| {
             for (bound, found) in answers.into_iter().zip(few) {
-                let bound = if unsure { 0.0 } else { bound };
                 // NaN says nothing, so it is not later than anything.
                 if bound == f64::INFINITY || bound > horizon {
                     continue;
