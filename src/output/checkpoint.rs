@@ -264,11 +264,11 @@ mod tests {
     #[test]
     fn other_versions_are_named() {
         let mut newer = one().to_bytes();
-        newer[MAGIC.len()] = 2;
+        newer[MAGIC.len()] = FORMAT as u8 + 1;
         let error = Checkpoint::from_bytes(&newer).unwrap_err();
         let said = error.to_string();
         assert!(
-            said.contains("format 2") && said.contains(VERSION),
+            said.contains(&format!("format {}", FORMAT + 1)) && said.contains(VERSION),
             "{said}"
         );
     }
