@@ -6,6 +6,7 @@
 #[cfg(test)]
 mod audit;
 mod body;
+mod candidates;
 mod cascade;
 mod cells;
 mod collisions;

@@ -2,13 +2,13 @@ use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
 use crate::engine::body::{World, flight_of, scale_at};
+use crate::engine::candidates::Candidate;
 use crate::engine::cells::Found;
 use crate::engine::consistency::Vigil;
 use crate::engine::counts::{Counts, ModeCounts};
 use crate::engine::guards::Traces;
 use crate::engine::neighbours::Neighbours;
 use crate::engine::queue::EventQueue;
-use crate::engine::search::Candidate;
 use crate::engine::settings::{Collapse, Settings};
 use crate::engine::slot::Slot;
 use crate::engine::transitions::Alarm;

@@ -54,6 +54,44 @@ fn first_root(c0: f64x4, b: f64x4, a: f64x4) -> f64x4 {
     c0.simd_gt(f64x4::ZERO) & time
 }
 
+/// Four gaps, as sums over the axes.
+struct Gaps {
+    /// r², r·v, v².
+    squared: f64x4,
+    b: f64x4,
+    a: f64x4,
+    /// r·a, v·a, a²; zeros if nothing accelerates.
+    fall: f64x4,
+    c3: f64x4,
+    bent: f64x4,
+    /// Distances of the centres at contact.
+    distance: f64x4,
+}
+
+impl Gaps {
+    /// When they are closed at the earliest.
+    #[inline(always)]
+    fn closed(self, accelerates: bool, growth: f64, horizon: f64) -> [f64; LANES] {
+        let near = near(horizon, accelerates || growth != 0.0);
+        let near_squared = near * near;
+        let contact = self.distance * self.distance;
+        let mut size = self.squared * 9.0 + contact * 4.0;
+        let (mut b, mut a) = (self.b, self.a);
+        if accelerates {
+            size += self.bent * (4.0 * near_squared * near_squared);
+            a += self.fall + bend(self.c3, self.bent, near);
+        }
+        if growth != 0.0 {
+            let growth = self.distance * growth;
+            size += growth * growth * (16.0 * near_squared);
+            b -= self.distance * growth;
+            a -= growth * growth;
+        }
+        let time = first_root(self.squared - contact - size * ROUND, b, a);
+        up_to(time, near, horizon)
+    }
+}
+
 /// What is said of times up to `near` alone.
 #[inline(always)]
 fn up_to(time: f64x4, near: f64, horizon: f64) -> [f64; LANES] {
@@ -75,9 +113,6 @@ pub(super) fn not_before<const D: usize, F: PolynomialFlight<D>>(
     let here: Vector<D> = own.start();
     let speed: Vector<D> = own.start_velocity();
     let pull: Vector<D> = own.acceleration();
-    let curved = F::ACCELERATES || crowd.growth != 0.0;
-    let near = near(crowd.horizon, curved);
-    let near_squared = near * near;
     let none = [[0.0; LANES]; D];
     let (mut positions, mut velocities, mut accelerations) = (none, none, none);
     for lane in 0..LANES {
@@ -127,21 +162,16 @@ pub(super) fn not_before<const D: usize, F: PolynomialFlight<D>>(
             bent += acceleration * acceleration;
         }
     }
-    let distance = f64x4::new(crowd.distances) + crowd.blur;
-    let contact = distance * distance;
-    let mut size = squared * 9.0 + contact * 4.0;
-    if F::ACCELERATES {
-        size += bent * (4.0 * near_squared * near_squared);
-        a += fall + bend(c3, bent, near);
-    }
-    if crowd.growth != 0.0 {
-        let growth = distance * crowd.growth;
-        size += growth * growth * (16.0 * near_squared);
-        b -= distance * growth;
-        a -= growth * growth;
-    }
-    let time = first_root(squared - contact - size * ROUND, b, a);
-    up_to(time, near, crowd.horizon)
+    let gaps = Gaps {
+        squared,
+        b,
+        a,
+        fall,
+        c3,
+        bent,
+        distance: f64x4::new(crowd.distances) + crowd.blur,
+    };
+    gaps.closed(F::ACCELERATES, crowd.growth, crowd.horizon)
 }
 
 /// The same for grains at rest: the motion is that of the one grain, so most
@@ -152,9 +182,6 @@ pub(super) fn not_before_resting<const D: usize, F: PolynomialFlight<D>>(
 ) -> [f64; LANES] {
     let velocity: Vector<D> = nook.own.start_velocity();
     let acceleration: Vector<D> = nook.own.acceleration();
-    let curved = F::ACCELERATES || nook.growth != 0.0;
-    let near = near(nook.horizon, curved);
-    let near_squared = near * near;
     let (mut squared, mut b, mut fall) = (f64x4::ZERO, f64x4::ZERO, f64x4::ZERO);
     for axis in 0..D {
         let apart = f64x4::new(nook.resting.places[axis]) - nook.place[axis];
@@ -164,21 +191,14 @@ pub(super) fn not_before_resting<const D: usize, F: PolynomialFlight<D>>(
             fall -= apart * acceleration[axis];
         }
     }
-    let distance = f64x4::new(nook.resting.distances) * nook.scale + nook.blur;
-    let contact = distance * distance;
-    let mut size = squared * 9.0 + contact * 4.0;
-    let mut a = f64x4::splat(velocity.norm_squared());
-    if F::ACCELERATES {
-        let bent = f64x4::splat(acceleration.norm_squared());
-        size += bent * (4.0 * near_squared * near_squared);
-        a += fall + bend(f64x4::splat(velocity.dot(&acceleration)), bent, near);
-    }
-    if nook.growth != 0.0 {
-        let growth = distance * nook.growth;
-        size += growth * growth * (16.0 * near_squared);
-        b -= distance * growth;
-        a -= growth * growth;
-    }
-    let time = first_root(squared - contact - size * ROUND, b, a);
-    up_to(time, near, nook.horizon)
+    let gaps = Gaps {
+        squared,
+        b,
+        a: f64x4::splat(velocity.norm_squared()),
+        fall,
+        c3: f64x4::splat(velocity.dot(&acceleration)),
+        bent: f64x4::splat(acceleration.norm_squared()),
+        distance: f64x4::new(nook.resting.distances) * nook.scale + nook.blur,
+    };
+    gaps.closed(F::ACCELERATES, nook.growth, nook.horizon)
 }
