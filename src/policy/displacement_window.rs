@@ -9,9 +9,10 @@ use crate::time::Time;
 
 /// At rest is who has stayed within ε of one place for a time τ.
 ///
-/// The place is that of the collision with which the window began; a collision
-/// farther than ε from it begins a new one. Physics engines for games have come
-/// to this from a bound on the speed (the engine Rapier with its version 0.35).
+/// The place is that of the collision with which the window began. Looked at are
+/// the places of the grain's collisions and those half-way in time between two of
+/// them, where a bounce is at its top; one farther than ε away begins a new
+/// window. Physics engines for games have come to this from a bound on the speed.
 /// It fails where motion is slow but steady: whatever is slower than ε/τ counts
 /// as rest.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -34,12 +35,34 @@ impl Default for DisplacementWindow {
     }
 }
 
-/// Where a grain was when its window began, and when that was.
+/// Where a grain was when its window began, and at its last collision.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(bound = "")]
 pub struct Anchor<const D: usize> {
     place: Vector<D>,
     since: Time,
+    last_place: Vector<D>,
+    last: Time,
+}
+
+impl<const D: usize> Anchor<D> {
+    fn new(place: Vector<D>, since: Time) -> Self {
+        Anchor {
+            place,
+            since,
+            last_place: place,
+            last: since,
+        }
+    }
+
+    /// How far from where the window began a grain has been since its last
+    /// collision, at the end and half-way of a parabola that ends at `place` now.
+    fn farthest(&self, place: &Vector<D>, now: Time, gravity: &Vector<D>) -> f64 {
+        let flown = now - self.last;
+        let middle = (place + self.last_place) * 0.5 - gravity * (0.125 * flown * flown);
+        let end = (place - self.place).norm_squared();
+        end.max((middle - self.place).norm_squared()).sqrt()
+    }
 }
 
 impl<const D: usize> RestCondition<D> for DisplacementWindow {
@@ -57,20 +80,15 @@ impl<const D: usize> RestCondition<D> for DisplacementWindow {
         _near: &S,
         history: &mut Option<Anchor<D>>,
     ) -> Result<Reason, Reason> {
-        let place = impact.particle.position;
-        let anchor = *history.get_or_insert(Anchor {
-            place,
-            since: impact.time,
-        });
-        let moved = (place - anchor.place).norm_squared().sqrt();
+        let (place, now) = (impact.particle.position, impact.time);
+        let anchor = history.get_or_insert(Anchor::new(place, now));
+        let moved = anchor.farthest(&place, now, &impact.gravity);
         if moved >= self.distance {
-            *history = Some(Anchor {
-                place,
-                since: impact.time,
-            });
+            *anchor = Anchor::new(place, now);
             return Err(Reason::new("moved less than ε", moved, self.distance));
         }
-        let stayed = impact.time - anchor.since;
+        (anchor.last_place, anchor.last) = (place, now);
+        let stayed = now - anchor.since;
         let reason = Reason::new("within ε for longer than τ", stayed, self.window);
         if stayed > self.window {
             Ok(reason)

@@ -95,7 +95,7 @@ impl SlowDescent {
     }
 
     /// How long the energy of a sleeper is stored, in √(d/g).
-    fn store_time(&self, gravity: f64) -> f64 {
+    pub(crate) fn store_time(&self, gravity: f64) -> f64 {
         self.store_time
             .unwrap_or(2.0 * self.sleep_speed / ((1.0 - self.frozen_restitution) * gravity))
     }

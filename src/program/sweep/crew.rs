@@ -10,6 +10,7 @@ use std::thread;
 use std::time::Duration;
 
 use crate::output::RunFolder;
+use crate::program::criteria::Program;
 use crate::program::drive::{Options, scenario_text};
 use crate::program::error::ProgramError;
 use crate::program::progress::Gauge;
@@ -33,6 +34,7 @@ pub(super) struct Crew<'a> {
     pub(super) threads: usize,
     pub(super) checkpoint_every: Option<f64>,
     pub(super) signals: &'a Signals,
+    pub(super) program: &'a Program,
 }
 
 impl Crew<'_> {
@@ -110,7 +112,12 @@ impl Crew<'_> {
             Ok(found) if found == scenario_text(&scenario)? => {
                 // Once collapsed it would collapse again.
                 if !Outcome::read(folder).is_collapsed() {
-                    continued(RunFolder::open(folder)?, options, self.signals)?;
+                    continued(
+                        RunFolder::open(folder)?,
+                        options,
+                        self.signals,
+                        self.program,
+                    )?;
                 }
                 Ok(())
             }
@@ -126,6 +133,7 @@ impl Crew<'_> {
                     folder,
                     force: true,
                     options,
+                    program: self.program,
                 };
                 run.begin(self.signals).map(drop)
             }

@@ -15,9 +15,9 @@ use crate::setup;
 /// The model of a scenario without gravity.
 pub type FloatingModel<const D: usize> =
     Parts<ForceFree, Polynomial, Restitution, Never, Cuboid<D>>;
-/// The model of a scenario with gravity.
-pub type GravityModel<const D: usize> =
-    Parts<UniformGravity<D>, Polynomial, Restitution, SlowDescent, Cuboid<D>>;
+/// The model of a scenario with gravity, and with `S` for who sleeps and wakes.
+pub type GravityModel<S, const D: usize> =
+    Parts<UniformGravity<D>, Polynomial, Restitution, S, Cuboid<D>>;
 
 impl Scenario {
     /// Lower end and length of an axis that is bounded on both sides, in d, and
@@ -77,9 +77,9 @@ impl Scenario {
         }
     }
 
-    /// Who falls asleep and wakes.
+    /// The paper's criteria as the scenario has them, whichever it names.
     #[must_use]
-    pub fn policy(&self) -> SlowDescent {
+    pub fn slow_descent(&self) -> SlowDescent {
         let (parameters, sleep) = (&self.parameters, &self.sleep);
         SlowDescent {
             sleep_speed: parameters.sleep_speed,
@@ -125,15 +125,19 @@ impl Scenario {
         }
     }
 
-    /// The model with gravity, sleep and wake.
+    /// The model with gravity, in which `policy` says who sleeps and wakes.
     #[must_use]
-    pub fn gravity_model<const D: usize>(&self, boundary: Cuboid<D>) -> GravityModel<D> {
+    pub fn gravity_model<S, const D: usize>(
+        &self,
+        policy: S,
+        boundary: Cuboid<D>,
+    ) -> GravityModel<S, D> {
         let component = |axis, _| self.gravity.component(axis, D);
         Parts {
             dynamics: UniformGravity::new(Vector::from_fn(component)),
             predictor: Polynomial,
             collision_rule: self.collision_rule(),
-            state_policy: self.policy(),
+            state_policy: policy,
             boundary,
         }
     }
