@@ -139,7 +139,7 @@ impl<const D: usize, C: RestCondition<D>> StatePolicy<D> for AtRest<C> {
         let answer = self
             .condition
             .at_rest(impact, after, near, &mut memory.history);
-        if !impact.is_on_static() && !(self.wall_supports && impact.is_on_wall()) {
+        if !(impact.is_on_static() || self.wall_supports && impact.is_on_wall()) {
             return SleepDecision::Stay(Reason::new("on a static grain", 0.0, 1.0));
         }
         match answer {

@@ -29,11 +29,11 @@ pub struct GranularTemperature {
 }
 
 impl Default for GranularTemperature {
-    /// Below 10⁻⁴ gd among at least D + 1 = 4 grains nearer than 1.2: one grain
-    /// in five moves with 0.04 √(gd).
+    /// Below 5·10⁻⁴ gd, with at least 4 grains nearer than 1.2: that of one grain
+    /// in space that moves with 0.1 √(gd) among four at rest.
     fn default() -> Self {
         GranularTemperature {
-            temperature: 1.0e-4,
+            temperature: 5.0e-4,
             range: 1.2,
             least_neighbours: 4,
         }

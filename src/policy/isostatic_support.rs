@@ -30,12 +30,12 @@ pub struct IsostaticSupport {
 }
 
 impl Default for IsostaticSupport {
-    /// V_sleep = V_wakeup = 0.1 √(gd), and contacts nearer than 1.05, like the
-    /// supports of the paper's self-check.
+    /// V_sleep = V_wakeup = 0.1 √(gd), and contacts nearer than 1.01: gaps
+    /// below 0.01 d.
     fn default() -> Self {
         IsostaticSupport {
             descent: SlowDescent::default(),
-            range: 1.05,
+            range: 1.01,
         }
     }
 }
