@@ -56,7 +56,7 @@
 //! | [`engine`] | the simulation, its guards, limits and counts |
 //! | [`observe`] | ready-made observers |
 //! | [`setup`] | where grains come from: rain, gas, base, one by one |
-//! | [`analysis`] | what is measured of grains at rest: heights, packing fraction |
+//! | [`analysis`] | what is measured on grains: packing fractions, pairs, contacts, motion, surfaces |
 //! | [`particle`], [`time`], [`error`] | grains, instants, refusals |
 //! | `scenario`, `output`, `draw`, `plot`, `program` | scenario files, run folders, pictures, plots, the command line |
 //!
@@ -113,6 +113,8 @@ mod book {
     #[cfg(feature = "program")]
     #[doc = include_str!("../book/src/interrupted.md")]
     struct InterruptedRuns;
+    #[doc = include_str!("../book/src/analysis.md")]
+    struct Analysis;
     #[doc = include_str!("../book/src/results.md")]
     struct Results;
 }

@@ -28,6 +28,7 @@ mod colour;
 mod iso;
 mod legend;
 mod map;
+mod pen;
 mod series;
 mod sheet;
 

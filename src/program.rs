@@ -3,6 +3,7 @@
 //! Exit codes: 0 done · 1 input or output, or a validation, failed · 2 the input is refused ·
 //! 3 stopped early, with the state saved · 130 and 143 stopped by a signal.
 
+mod analyse;
 mod bench;
 mod cli;
 mod criteria;
@@ -50,6 +51,7 @@ fn run_command(program: &Program) -> ExitCode {
         Command::Check(arguments) => show::check(&arguments, program),
         Command::Schema => show::schema(),
         Command::Draw(arguments) => draw::draw(&arguments),
+        Command::Analyse(arguments) => analyse::analyse(&arguments),
         Command::Validate(arguments) => validate::validate(&arguments),
         Command::Bench(arguments) => bench::bench(&arguments),
     };

@@ -1,6 +1,6 @@
 //! Flights under an acceleration that turns.
 
-use crate::model::{Flight, TurningFlight};
+use crate::model::{Drift, Flight, TurningFlight};
 use crate::particle::Vector;
 
 /// What accelerates a grain.
@@ -8,8 +8,10 @@ use crate::particle::Vector;
 pub(super) enum Pull {
     /// Nothing.
     Nothing,
-    /// Gravity.
+    /// Gravity that turns continuously.
     Gravity,
+    /// Gravity that turns in steps.
+    Steps,
     /// The ground that carries it along.
     Ground,
 }
@@ -32,6 +34,9 @@ pub struct Trochoid<const D: usize> {
     /// Turns from the one axis to the other.
     pub(super) plane: [u8; 2],
     pub(super) pull: Pull,
+    /// With steps: when the next one is, and how long they are, in √(d/g).
+    pub(super) next_step: f64,
+    pub(super) step: f64,
 }
 
 /// Below this angle the series need six terms.
@@ -105,6 +110,23 @@ impl<const D: usize> Trochoid<D> {
         turned
     }
 
+    /// With gravity that turns in steps: the same counted from the last step before
+    /// `after`, and what is left of the time.
+    fn stepped(&self, after: f64) -> (Self, f64) {
+        let mut flight = *self;
+        let mut left = after;
+        while left >= flight.next_step {
+            let time = flight.next_step;
+            left -= time;
+            flight.position += (flight.velocity + flight.steady * (0.5 * time)) * time;
+            flight.velocity += flight.steady * time;
+            let turn = Turn::by(flight.rate * flight.step);
+            flight.steady = flight.turned_along(&flight.steady, &turn);
+            flight.next_step = flight.step;
+        }
+        (flight, left)
+    }
+
     /// From the axis to a grain that is carried along, in d.
     #[inline]
     fn radius(&self) -> Vector<D> {
@@ -140,6 +162,10 @@ impl<const D: usize> Flight<D> for Trochoid<D> {
                     + self.quarter(&self.turning) * (turn.x * turn.b);
                 self.position + (self.velocity + bend * after) * after
             }
+            Pull::Steps => {
+                let (flight, after) = self.stepped(after);
+                flight.position + (flight.velocity + flight.steady * (0.5 * after)) * after
+            }
             Pull::Ground => {
                 // Round the axis, so that nothing grows with the number of turns.
                 let turn = Turn::by(self.rate * after);
@@ -161,6 +187,10 @@ impl<const D: usize> Flight<D> for Trochoid<D> {
                     + self.quarter(&self.turning) * (turn.x * turn.a);
                 self.velocity + mean * after
             }
+            Pull::Steps => {
+                let (flight, after) = self.stepped(after);
+                flight.velocity + flight.steady * after
+            }
             Pull::Ground => self.turned_along(&self.velocity, &Turn::by(self.rate * after)),
         }
     }
@@ -179,6 +209,16 @@ impl<const D: usize> Flight<D> for Trochoid<D> {
     fn advanced(&self, after: f64) -> Self {
         let turning = match self.pull {
             Pull::Nothing => self.turning,
+            Pull::Steps => {
+                let (flight, left) = self.stepped(after);
+                return Trochoid {
+                    position: flight.position
+                        + (flight.velocity + flight.steady * (0.5 * left)) * left,
+                    velocity: flight.velocity + flight.steady * left,
+                    next_step: flight.next_step - left,
+                    ..flight
+                };
+            }
             Pull::Gravity | Pull::Ground => {
                 self.turned(&self.turning, &Turn::by(self.rate * after))
             }
@@ -198,6 +238,7 @@ impl<const D: usize> Flight<D> for Trochoid<D> {
             Pull::Nothing => speed,
             // Rounding of the velocity as it turns.
             Pull::Ground => speed * (1.0 + 1.0e-12),
+            Pull::Steps => speed + self.steady.norm_squared().sqrt() * within,
             Pull::Gravity => {
                 // What turns gives no more speed than in half a turn.
                 let longest = (2.0 / self.rate.abs()).min(within);
@@ -233,6 +274,55 @@ impl<const D: usize> TurningFlight<D> for Trochoid<D> {
     #[inline]
     fn plane(&self) -> [usize; 2] {
         self.plane.map(usize::from)
+    }
+
+    #[inline]
+    fn changes_after(&self) -> f64 {
+        match self.pull {
+            Pull::Steps => self.next_step,
+            Pull::Nothing | Pull::Gravity | Pull::Ground => f64::INFINITY,
+        }
+    }
+
+    fn drift(&self) -> Drift<D> {
+        let nothing = Vector::zeros();
+        let (velocity, acceleration, radius) = match self.pull {
+            Pull::Nothing => (self.velocity, nothing, 0.0),
+            Pull::Ground => (nothing, nothing, 2.0 * self.radius().norm_squared().sqrt()),
+            Pull::Gravity => {
+                let across = self.quarter(&self.turning) / self.rate;
+                let circle = self.turning.norm_squared().sqrt() / (self.rate * self.rate);
+                (self.velocity + across, self.steady, 2.0 * circle)
+            }
+            Pull::Steps => {
+                // A geometric series of velocities, each turned by θ = Ω step: its
+                // mean, and how far partial sums get from it.
+                let mut across = self.steady;
+                let mut flat = self.steady;
+                for axis in self.plane() {
+                    across[axis] = 0.0;
+                }
+                flat -= across;
+                let half = Turn::by(0.5 * self.rate * self.step);
+                let chord = 2.0 * half.sin();
+                let size = flat.norm_squared().sqrt();
+                let mean = self.quarter(&self.turned(&flat, &half)) * (self.step / chord);
+                let gained = flat * self.next_step + mean;
+                let wave = size * self.step;
+                let swing = wave / chord.abs();
+                let offset = gained.norm_squared().sqrt() + 2.0 * wave;
+                let radius = self.step * (2.0 * (swing + wave) / chord.abs() + swing + offset);
+                // Steps of whole turns are no turns at all.
+                let known = chord.abs() > 1.0e-9;
+                let radius = if known { radius } else { f64::INFINITY };
+                (self.velocity + gained, across, radius)
+            }
+        };
+        Drift {
+            velocity,
+            acceleration,
+            radius,
+        }
     }
 
     #[inline]

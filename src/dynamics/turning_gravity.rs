@@ -9,12 +9,14 @@ use crate::time::Time;
 /// Coriolis force, which the paper neglects.
 ///
 /// Normal grains fly on trochoids, falling ones straight on, static ones are at
-/// rest or keep their velocity. It turns continuously; there are no steps.
+/// rest or keep their velocity. It turns continuously, or
+/// [in steps](TurningGravity::in_steps).
 #[derive(Clone, Copy, Debug)]
 pub struct TurningGravity<const D: usize> {
     gravity: Vector<D>,
     rate: f64,
     plane: [usize; 2],
+    step: Option<f64>,
 }
 
 impl<const D: usize> TurningGravity<D> {
@@ -27,12 +29,35 @@ impl<const D: usize> TurningGravity<D> {
             gravity,
             rate,
             plane,
+            step: None,
         }
+    }
+
+    /// The same in steps: gravity is constant for `step` √(d/g), then turns at once
+    /// by as much as it would have in that time. With ever shorter steps
+    /// trajectories tend to those of continuous gravity, at first order.
+    #[must_use]
+    pub fn in_steps(mut self, step: f64) -> Self {
+        self.step = Some(step);
+        self
     }
 
     /// The angle that gravity has turned by at `time`, in radians.
     fn angle(&self, time: Time) -> f64 {
-        self.rate * time.units()
+        match self.step {
+            None => self.rate * time.units(),
+            Some(step) => self.rate * step * libm::floor(time.units() / step),
+        }
+    }
+
+    /// When gravity turns next, counted from `since`; positive.
+    fn next_step(&self, since: Time) -> f64 {
+        let Some(step) = self.step else {
+            return f64::INFINITY;
+        };
+        let steps = libm::floor(since.units() / step);
+        let next = Time::from_units((steps + 1.0) * step) - since;
+        if next > 0.0 { next } else { step }
     }
 
     /// The part that turns, at `time`.
@@ -95,23 +120,27 @@ impl<const D: usize> Dynamics<D> for TurningGravity<D> {
 
     #[inline]
     fn flight(&self, motion: &Motion<D>, since: Time) -> Trochoid<D> {
-        let falls = motion.mode == Mode::Normal;
+        let nothing = Vector::zeros();
+        let (pull, steady, turning) = match (motion.mode, self.step) {
+            (Mode::Normal, None) => (Pull::Gravity, self.steady(), self.turning(since)),
+            (Mode::Normal, Some(_)) => (Pull::Steps, self.gravity(since), nothing),
+            (Mode::Falling | Mode::Frozen | Mode::Fixed, _) => (Pull::Nothing, nothing, nothing),
+        };
+        let steps = pull == Pull::Steps;
         Trochoid {
             position: motion.position,
             velocity: motion.velocity,
-            steady: if falls {
-                self.steady()
-            } else {
-                Vector::zeros()
-            },
-            turning: if falls {
-                self.turning(since)
-            } else {
-                Vector::zeros()
-            },
+            steady,
+            turning,
             rate: self.rate,
             plane: self.plane.map(|axis| axis as u8),
-            pull: if falls { Pull::Gravity } else { Pull::Nothing },
+            pull,
+            next_step: if steps {
+                self.next_step(since)
+            } else {
+                f64::INFINITY
+            },
+            step: self.step.unwrap_or(f64::INFINITY),
         }
     }
 
@@ -120,6 +149,15 @@ impl<const D: usize> Dynamics<D> for TurningGravity<D> {
     }
 
     fn validate(&self) -> Result<(), SetupError> {
+        if let Some(step) = self.step
+            && !(1.0e-9..=1.0e9).contains(&step)
+        {
+            return Err(SetupError::Parameter {
+                field: "step",
+                value: step,
+                allowed: "1e-9 … 1e9 is allowed",
+            });
+        }
         check_turning(&self.gravity, self.rate, self.plane)
     }
 }

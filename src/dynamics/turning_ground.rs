@@ -69,6 +69,8 @@ impl<const D: usize> Dynamics<D> for TurningGround<D> {
             rate: self.rate,
             plane: self.plane.map(|axis| axis as u8),
             pull,
+            next_step: f64::INFINITY,
+            step: f64::INFINITY,
         }
     }
 

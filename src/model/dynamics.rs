@@ -59,6 +59,18 @@ pub trait PolynomialFlight<const D: usize>: Flight<D> {
     fn acceleration(&self) -> Vector<D>;
 }
 
+/// Where a flight gets to in the long run: from its start by u t + s t²/2, to
+/// within a radius, at any time t.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Drift<const D: usize> {
+    /// u, in √(gd).
+    pub velocity: Vector<D>,
+    /// s, in g.
+    pub acceleration: Vector<D>,
+    /// The radius, in d; infinite if nothing is known.
+    pub radius: f64,
+}
+
 /// A flight under a constant acceleration and one that turns at a constant rate:
 ///
 /// a(t) = s + p cos Ωt + p⟂ sin Ωt, with p in the plane in which it turns.
@@ -78,6 +90,14 @@ pub trait TurningFlight<const D: usize>: Flight<D> {
     /// It turns from the first of these axes to the second. The same for all
     /// flights of a model.
     fn plane(&self) -> [usize; 2];
+
+    /// Until when it is so, in √(d/g): what accelerates it may change at once then.
+    fn changes_after(&self) -> f64 {
+        f64::INFINITY
+    }
+
+    /// Where it gets to in the long run.
+    fn drift(&self) -> Drift<D>;
 
     /// True if what accelerates the two is the same, so that they accelerate
     /// alike at all times, however their accelerations have been rounded.

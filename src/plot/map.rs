@@ -1,7 +1,8 @@
 //! Fields in the plane.
 
 use crate::plot::axis::Scale;
-use crate::plot::chart::{Pen, axes, title};
+use crate::plot::chart::{axes, title};
+use crate::plot::pen::Pen;
 use crate::plot::sheet::{Align, Area, INK, Sheet, draw, text_width};
 use crate::plot::{Axis, Colour, PlotError, Stroke, iso_lines, sequential};
 

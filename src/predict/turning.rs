@@ -15,9 +15,9 @@ mod course;
 mod flat;
 mod last_digits;
 
-use super::descent::{Descent, quartic_descent};
+use super::descent::{Descent, quadratic_descent, quartic_descent};
 use super::lead::{self, Lead};
-use super::{DoubleDouble, Real, forecast, screen, wall};
+use super::{DoubleDouble, GapPolynomial, Real, Relative, forecast, screen, wall};
 use crate::model::{
     Approach, Crowd, Encounter, Flight, Forecast, LANES, Nook, PolynomialFlight, Predictor, Shape,
     TurningFlight, Wall,
@@ -124,24 +124,29 @@ impl<const D: usize, F: TurningFlight<D>> Predictor<D, F> for Turning {
     fn pair(&self, approach: &Approach<D, F>) -> Forecast {
         let Approach { first, second, .. } = approach;
         if first.accelerates_like(second) {
-            return super::pair(&Approach {
-                first: Arc::straight(first),
-                second: Arc::straight(second),
-                shift: approach.shift,
-                distance: approach.distance,
-                growth: approach.growth,
-                touching: approach.touching,
-                horizon: approach.horizon,
-            })
-            .0;
+            return straight(approach);
         }
-        bent(approach)
+        let until = first.changes_after().min(second.changes_after());
+        if approach.horizon <= until {
+            return bent(approach);
+        }
+        let near = Approach {
+            horizon: until,
+            ..*approach
+        };
+        match bent(&near) {
+            Forecast::Contact(time) if time <= until => Forecast::Contact(time),
+            Forecast::AskAgain(time) if time < until => Forecast::AskAgain(time),
+            _ if drift_apart(approach) => Forecast::Never,
+            _ => Forecast::AskAgain(until),
+        }
     }
 
     fn not_before(&self, own: &F, other: impl Fn(usize) -> F, crowd: &Crowd<D>) -> [f64; LANES] {
         let others: [F; LANES] =
             std::array::from_fn(|lane| other(lane).advanced(crowd.after[lane]));
         let mut turn: f64 = 0.0;
+        let mut until = own.changes_after();
         let arcs = others.each_ref().map(|flight| {
             let mut arc = Arc::tangent(flight);
             if own.accelerates_like(flight) {
@@ -149,6 +154,7 @@ impl<const D: usize, F: TurningFlight<D>> Predictor<D, F> for Turning {
                 arc.acceleration = own.steady() + own.turning();
             } else {
                 turn = turn.max(jerk(own) + jerk(flight));
+                until = until.min(flight.changes_after());
             }
             arc
         });
@@ -157,7 +163,7 @@ impl<const D: usize, F: TurningFlight<D>> Predictor<D, F> for Turning {
             .iter()
             .copied()
             .fold(f64::INFINITY, f64::min);
-        in_stages(crowd.horizon, turn, least, |horizon, growth| {
+        in_stages(crowd.horizon, until, turn, least, |horizon, growth| {
             let near = Crowd {
                 after: [0.0; LANES],
                 growth: crowd.growth + growth,
@@ -172,31 +178,45 @@ impl<const D: usize, F: TurningFlight<D>> Predictor<D, F> for Turning {
         let own = Arc::tangent(nook.own);
         let distances = nook.resting.distances.iter();
         let least = distances.copied().fold(f64::INFINITY, f64::min) * nook.scale;
-        in_stages(nook.horizon, jerk(nook.own), least, |horizon, growth| {
-            screen::not_before_resting(&Nook {
-                own: &own,
-                place: nook.place,
-                resting: nook.resting,
-                scale: nook.scale,
-                growth: nook.growth + growth,
-                blur: nook.blur,
-                horizon,
-            })
-        })
+        let until = nook.own.changes_after();
+        in_stages(
+            nook.horizon,
+            until,
+            jerk(nook.own),
+            least,
+            |horizon, growth| {
+                screen::not_before_resting(&Nook {
+                    own: &own,
+                    place: nook.place,
+                    resting: nook.resting,
+                    scale: nook.scale,
+                    growth: nook.growth + growth,
+                    blur: nook.blur,
+                    horizon,
+                })
+            },
+        )
     }
 
     fn wall<W: Wall<D>>(&self, encounter: &Encounter<'_, D, F, W>) -> Forecast {
         let flight = &encounter.flight;
         let own = flight.steady().norm_squared().sqrt() + flight.turning().norm_squared().sqrt();
         match encounter.wall.shape() {
-            Shape::Plane { normal, offset } if flight.turning() == Vector::<D>::zeros() => {
-                let bent = encounter_of(encounter, Arc::tangent(flight), encounter.horizon);
-                wall::plane(&bent, &normal, offset)
-            }
             Shape::Plane { normal, offset } => {
-                let last_chance = flat::last_chance(encounter, &normal, offset);
-                let near = encounter_of(encounter, *flight, encounter.horizon.min(last_chance));
-                wall::general(&near, own, 0.0, 0.0, 0.0)
+                if flat::drifts_away(encounter, &normal, offset) {
+                    Forecast::Never
+                } else if flight.turning() == Vector::<D>::zeros() {
+                    let until = flight.changes_after();
+                    let horizon = encounter.horizon.min(until);
+                    let bent = encounter_of(encounter, Arc::tangent(flight), horizon);
+                    match wall::plane(&bent, &normal, offset) {
+                        Forecast::Contact(time) if time <= until => Forecast::Contact(time),
+                        _ if until < encounter.horizon => Forecast::AskAgain(until),
+                        other => other,
+                    }
+                } else {
+                    wall::general(encounter, own, 0.0, 0.0, 0.0)
+                }
             }
             Shape::General {
                 curvature,
@@ -235,13 +255,14 @@ fn jerk<const D: usize, F: TurningFlight<D>>(flight: &F) -> f64 {
 /// times first, for which they are sharp.
 fn in_stages(
     horizon: f64,
+    until: f64,
     turn: f64,
     least_distance: f64,
     bounds: impl Fn(f64, f64) -> [f64; LANES],
 ) -> [f64; LANES] {
     let mut times = [0.0; LANES];
     let mut reached = 0.0;
-    for stage in STAGES {
+    for stage in STAGES.map(|stage| stage.min(until)) {
         let ahead = horizon.min(stage);
         let growth = turn * ahead * ahead / (6.0 * least_distance) * (1.0 + ROUND);
         let found = bounds(ahead, growth);
@@ -262,20 +283,51 @@ fn in_stages(
     times
 }
 
+/// First contact of two flights that are straight as seen from each other.
+fn straight<const D: usize, F: TurningFlight<D>>(approach: &Approach<D, F>) -> Forecast {
+    let (forecast, _) = super::pair(&Approach {
+        first: Arc::straight(&approach.first),
+        second: Arc::straight(&approach.second),
+        shift: approach.shift,
+        distance: approach.distance,
+        growth: approach.growth,
+        touching: approach.touching,
+        horizon: approach.horizon,
+    });
+    forecast
+}
+
+/// True if there certainly is no contact at all, for what goes round also drifts,
+/// and that comes nowhere near.
+fn drift_apart<const D: usize, F: TurningFlight<D>>(approach: &Approach<D, F>) -> bool {
+    let (first, second) = (&approach.first, &approach.second);
+    let (one, other) = (first.drift(), second.drift());
+    let circle = (one.radius + other.radius) * (1.0 + ROUND);
+    if !circle.is_finite() {
+        return false;
+    }
+    let drift = GapPolynomial::<f64>::new(&Relative {
+        offset: second.start() - first.start() + approach.shift,
+        velocity: other.velocity - one.velocity,
+        acceleration: other.acceleration - one.acceleration,
+        distance: (approach.distance + circle) * (1.0 + ROUND),
+        growth: approach.growth,
+    })
+    .lowered();
+    let [c0, c1, c2, _, c4] = drift.coefficients;
+    let next = if c4 > 0.0 {
+        quartic_descent(&drift, false, f64::INFINITY)
+    } else {
+        quadratic_descent([c0, c1, c2], false, f64::INFINITY)
+    };
+    c0 > 0.0 && next == Descent::Never
+}
+
 /// First contact of two flights whose accelerations differ.
 fn bent<const D: usize, F: TurningFlight<D>>(approach: &Approach<D, F>) -> Forecast {
     let course = Course::<f64, D>::of(approach);
     if course.is_straight() {
-        return super::pair(&Approach {
-            first: Arc::straight(&approach.first),
-            second: Arc::straight(&approach.second),
-            shift: approach.shift,
-            distance: approach.distance,
-            growth: approach.growth,
-            touching: approach.touching,
-            horizon: approach.horizon,
-        })
-        .0;
+        return straight(approach);
     }
     let mut now = 0.0;
     for _ in 0..MOST_STEPS {
@@ -300,7 +352,7 @@ fn bent<const D: usize, F: TurningFlight<D>>(approach: &Approach<D, F>) -> Forec
         }
         let whole_turns_ahead = now == 0.0 && approach.horizon > FARTHEST / course.rate();
         now += valid;
-        if now > approach.horizon || (whole_turns_ahead && course.drifts_away()) {
+        if now > approach.horizon || (whole_turns_ahead && drift_apart(approach)) {
             return Forecast::Never;
         }
         if now * course.rate() > FARTHEST {

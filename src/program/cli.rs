@@ -4,6 +4,7 @@ use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand};
 
+use crate::program::analyse::AnalyseArguments;
 use crate::program::bench::BenchArguments;
 use crate::program::sweep::{MOST_RUNS, Variation};
 use crate::scenario::Assignment;
@@ -18,6 +19,7 @@ Examples:
   grainfall sweep deposition --set parameters.sleep_speed=0.02,0.05,0.1 --seeds 4
                                                 many runs, on all cores
   grainfall draw runs/deposition-1 --time 50
+  grainfall analyse runs/deposition-1           packing, contacts, motion: CSV and SVG
   grainfall validate --quick                    known physics, in a minute
   grainfall bench gas                           what a collision costs
 
@@ -161,6 +163,8 @@ pub(super) enum Command {
     Schema,
     /// Draw the grains of a run as SVG
     Draw(DrawArguments),
+    /// Measure packing, contacts and motion on the frames of a run
+    Analyse(AnalyseArguments),
     /// Measure known physics and say whether it comes out right
     Validate(ValidateArguments),
     /// Measure what events cost, in time and memory

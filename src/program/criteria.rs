@@ -262,7 +262,10 @@ where
     let policy = choice
         .policy(scenario)
         .ok_or_else(|| misfit(&job.origin, scenario))?;
-    Ok(task.run(|boundary| scenario.gravity_model(policy, boundary)))
+    Ok(match &scenario.rotation {
+        Some(rotation) => task.run(|boundary| scenario.turning_model(rotation, policy, boundary)),
+        None => task.run(|boundary| scenario.gravity_model(policy, boundary)),
+    })
 }
 
 /// The scenario names a criterion that this program does not know. (It has been

@@ -1,7 +1,9 @@
 use std::io;
 
+use crate::analysis::AnalysisError;
 use crate::error::SetupError;
 use crate::output::{FolderError, XyzError};
+use crate::plot::PlotError;
 use crate::program::sweep::SweepError;
 use crate::scenario::{Refusal, ScenarioError};
 
@@ -94,6 +96,20 @@ pub enum ProgramError {
         /// Why.
         source: XyzError,
     },
+    /// What was asked for can't be measured on this run.
+    #[error("{run} cannot be analysed: {reason}")]
+    NotAnalysed {
+        /// The run, or the file of frames.
+        run: String,
+        /// Why.
+        reason: String,
+    },
+    /// A measurement is refused.
+    #[error(transparent)]
+    Analysis(#[from] AnalysisError),
+    /// A plot can't be drawn.
+    #[error(transparent)]
+    Plot(#[from] PlotError),
 }
 
 impl ProgramError {
@@ -119,6 +135,9 @@ impl ProgramError {
             | ProgramError::SetUp(_)
             | ProgramError::Unresumable { .. }
             | ProgramError::Sweep(_)
+            | ProgramError::NotAnalysed { .. }
+            | ProgramError::Analysis(_)
+            | ProgramError::Plot(_)
             | ProgramError::Folder(_)
             | ProgramError::Frames { .. } => 2,
         }

@@ -90,6 +90,7 @@ pub(super) fn check(arguments: &CheckArguments, program: &Program) -> Result<u8,
             Ok(SourceKind::Base(_)) => parts.push("a base to make".to_owned()),
             Ok(SourceKind::Rain(rain)) => parts.push(format!("{} to rain", rain.count)),
             Ok(SourceKind::Gas(gas)) => parts.push(format!("{} of a gas to make", gas.count)),
+            Ok(SourceKind::Drum(_)) => parts.push("a drum to fill".to_owned()),
             Ok(SourceKind::OneByOne(drops)) => {
                 parts.push(format!("{} to drop one by one", drops.count));
             }
@@ -114,12 +115,16 @@ pub(super) fn check_grains<const D: usize>(
     let start = Start::<D>::given(origin, scenario)?;
     let (grains, boundary): (_, Cuboid<D>) = (start.grains.clone(), start.boundary.clone());
     let settings = scenario.settings();
-    let tried = match scenario.gravity {
-        Gravity::None => {
+    let tried = match (&scenario.gravity, &scenario.rotation) {
+        (Gravity::None, _) => {
             Simulation::with_settings(scenario.floating_model(boundary), grains, settings).map(drop)
         }
-        _ => {
+        (_, Some(rotation)) => {
             // Whoever sleeps: his parameters were checked when they were read.
+            let model = scenario.turning_model(rotation, Never, boundary);
+            Simulation::with_settings(model, grains, settings).map(drop)
+        }
+        (_, None) => {
             let model = scenario.gravity_model(Never, boundary);
             Simulation::with_settings(model, grains, settings).map(drop)
         }

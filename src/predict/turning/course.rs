@@ -2,8 +2,7 @@
 
 use crate::model::{Approach, TurningFlight};
 use crate::particle::Vector;
-use crate::predict::descent::{Descent, quadratic_descent, quartic_descent};
-use crate::predict::{GapPolynomial, Real, Relative};
+use crate::predict::{GapPolynomial, Real};
 
 /// Terms of the series of a turn; for angles up to 2 the last is below 10⁻³⁵.
 const MOST_TERMS: u32 = 20;
@@ -231,32 +230,6 @@ impl<N: Real, const D: usize> Course<N, D> {
 }
 
 impl<const D: usize> Course<f64, D> {
-    /// True if there certainly is no contact at all, for what goes round also
-    /// drifts,
-    ///
-    /// r + u t + s t²/2 + a circle of radius |p|/Ω² , u = v + p⟂/Ω ,
-    ///
-    /// and that comes nowhere near.
-    pub(super) fn drifts_away(&self) -> bool {
-        let across = Vector::<D>::from(self.quarter(&self.turning));
-        let circle = 2.0 * self.turning_size / (self.rate * self.rate);
-        let drift = GapPolynomial::<f64>::new(&Relative {
-            offset: Vector::<D>::from(self.offset),
-            velocity: Vector::<D>::from(self.velocity) + across / self.rate,
-            acceleration: Vector::<D>::from(self.steady),
-            distance: (self.distance + circle) * (1.0 + ROUND),
-            growth: self.growth,
-        })
-        .lowered();
-        let [c0, c1, c2, _, c4] = drift.coefficients;
-        let next = if c4 > 0.0 {
-            quartic_descent(&drift, false, f64::INFINITY)
-        } else {
-            quadratic_descent([c0, c1, c2], false, f64::INFINITY)
-        };
-        c0 > 0.0 && next == Descent::Never
-    }
-
     /// How far the mean velocity up to a time is from that of the parabola with
     /// the first acceleration, and how wrong that may be, in √(gd).
     pub(super) fn correction(&self, time: f64) -> ([f64; D], f64) {
