@@ -3,7 +3,7 @@
 
 mod common;
 
-use common::{Heavy, close, heavy, periodic_laterally, rain_on_base, rule, until, watch};
+use common::{Heavy, close, heavy, periodic_laterally, rule, until, watch};
 use grainfall::boundary::Side;
 use grainfall::engine::{Limits, Simulation, StopReason};
 use grainfall::model::{Model, Occurrence, OccurrenceKind as Kind, Place, StatePolicy};
@@ -13,10 +13,8 @@ use grainfall::policy::{
     Never, SelfCheck, SlowDescent, VelocityVariance,
 };
 use grainfall::scenario::{Origin, built_in_criteria, read_text};
-use grainfall::setup::Sizes;
+use grainfall::setup::{Rain, seeded};
 use grainfall::{Mode, Particle, ParticleId, Vector};
-
-const EQUAL: Sizes = Sizes::Equal { diameter: 1.0 };
 
 /// All criteria with their defaults, by their names.
 fn gallery() -> Vec<(&'static str, Criterion)> {
@@ -39,21 +37,46 @@ fn gallery() -> Vec<(&'static str, Criterion)> {
     names.zip(all).collect()
 }
 
-/// A small rain on a rough base.
+/// A small rain on a square lattice of fixed grains, of width 6 in the plane and
+/// 3 in space.
 fn rain<S: StatePolicy<D>, const D: usize>(policy: S) -> Simulation<Heavy<S, D>, D> {
-    let (count, width) = if D == 2 { (12, 6.0) } else { (10, 3.0) };
-    let grains = rain_on_base::<D>(1, count, width, EQUAL);
+    let wide: u32 = if D == 2 { 6 } else { 3 };
+    let width = f64::from(wide);
+    let place = |number: u32| {
+        let mut left = number;
+        Vector::<D>::from_fn(|axis, _| {
+            let along = left % wide;
+            left /= wide;
+            if axis + 1 < D {
+                f64::from(along) + 0.5
+            } else {
+                0.0
+            }
+        })
+    };
+    let across = (1..D as u32).fold(1, |all, _| all * wide);
+    let mut grains: Vec<Particle<D>> = (0..across).map(place).map(Particle::fixed).collect();
+    let mut lengths = Vector::repeat(width);
+    lengths[D - 1] = 0.0;
+    let mut above = Rain::<D> {
+        count: 12,
+        lengths,
+        packing_fraction: 0.1,
+        ..Rain::default()
+    };
+    above.origin[D - 1] = 0.5;
+    grains.extend(above.grains(&mut seeded(1)).unwrap());
     let model = heavy(rule(1.0e-3), policy, periodic_laterally(width));
     Simulation::new(model, grains).unwrap()
 }
 
-/// A line on how the rain has gone by t = 30, or 10 000 events.
+/// A line on how the rain has gone by t = 30, or 30 000 events.
 fn line<const D: usize>(name: &str, criterion: Criterion) -> String {
     let mut simulation = rain::<_, D>(criterion);
     let mut hash = TrajectoryHash::new();
     let limits = Limits {
         all_frozen: true,
-        events: 10_000,
+        events: 30_000,
         ..until(30.0)
     };
     simulation.run(&limits, &mut hash);
@@ -76,20 +99,20 @@ fn trajectories_of_all_criteria() {
         table += &line::<3>(name, criterion);
     }
     insta::assert_snapshot!(table, @r"
-    slow_descent         2D   9559 events   63 sleeps   51 wakes  0 awake 9f81d019f89c5731
-    slow_descent         3D   4794 events   27 sleeps   17 wakes  0 awake 0042891ef7705e3a
-    isostatic_support    2D   8193 events   69 sleeps   57 wakes  0 awake 13c05f8ec99d8222
-    isostatic_support    3D   5416 events   33 sleeps   23 wakes  0 awake 47c09e7d97479e78
-    displacement_window  2D  10000 events   21 sleeps   17 wakes  7 awake e4b545659e7c2ea6
-    displacement_window  3D  10000 events   11 sleeps    9 wakes  8 awake 14b26b05f1c6c513
-    velocity_variance    2D  10000 events   23 sleeps   20 wakes  9 awake 0da548e57d06b1e0
-    velocity_variance    3D  10000 events   14 sleeps   10 wakes  6 awake f6f6e0f9b4dc5820
-    granular_temperature 2D  10000 events    9 sleeps    8 wakes  9 awake a452cdcdab9f2a05
-    granular_temperature 3D  10000 events    1 sleeps    1 wakes 10 awake c190740aee9ae514
-    dynamo_sleep         2D  10000 events  548 sleeps  547 wakes  7 awake 6670e0fbbf0c7b42
-    dynamo_sleep         3D  10000 events 1546 sleeps 1544 wakes  8 awake cdc789f6e87d6ddc
-    never                2D  10000 events    0 sleeps    0 wakes  8 awake ecb9ddf1151c0fd2
-    never                3D  10000 events    0 sleeps    0 wakes 10 awake 9127b252df140d8f
+    slow_descent         2D  12188 events   89 sleeps   77 wakes  0 awake 55907bbba8059e57
+    slow_descent         3D   9379 events   50 sleeps   38 wakes  0 awake 3396a54f4ae41f50
+    isostatic_support    2D  13384 events   83 sleeps   71 wakes  0 awake f08210d86deae891
+    isostatic_support    3D   5316 events   58 sleeps   46 wakes  0 awake 2ba6a58d7b529fc6
+    displacement_window  2D  30000 events   10 sleeps    7 wakes  9 awake eaaba3a5ef2db3c5
+    displacement_window  3D  30000 events    6 sleeps    2 wakes  8 awake 7f6d63fda84be791
+    velocity_variance    2D  30000 events    2 sleeps    2 wakes 12 awake f5fc5ea2373231c9
+    velocity_variance    3D  30000 events   36 sleeps   32 wakes  8 awake 40175920eccf9454
+    granular_temperature 2D  30000 events    0 sleeps    0 wakes 12 awake 53abbef39106457e
+    granular_temperature 3D  30000 events    2 sleeps    1 wakes 11 awake f7f0bd415a25bb6c
+    dynamo_sleep         2D  30000 events  109 sleeps  109 wakes 12 awake 55d9d57521c7d398
+    dynamo_sleep         3D  30000 events  748 sleeps  744 wakes  8 awake 45d0d67992339688
+    never                2D  30000 events    0 sleeps    0 wakes 12 awake 53abbef39106457e
+    never                3D  30000 events    0 sleeps    0 wakes 12 awake 8abb5f1201e05fbc
     ");
 }
 

@@ -29,13 +29,13 @@ pub struct GranularTemperature {
 }
 
 impl Default for GranularTemperature {
-    /// Below 5·10⁻⁴ gd, with at least 4 grains nearer than 1.2: that of one grain
-    /// in space that moves with 0.1 √(gd) among four at rest.
+    /// Below 5·10⁻⁴ gd, with at least 3 grains nearer than 1.2: that of one grain
+    /// in space that moves with 0.09 √(gd) among three at rest.
     fn default() -> Self {
         GranularTemperature {
             temperature: 5.0e-4,
             range: 1.2,
-            least_neighbours: 4,
+            least_neighbours: 3,
         }
     }
 }

@@ -30,12 +30,12 @@ pub struct IsostaticSupport {
 }
 
 impl Default for IsostaticSupport {
-    /// V_sleep = V_wakeup = 0.1 √(gd), and contacts nearer than 1.01: gaps
-    /// below 0.01 d.
+    /// V_sleep = V_wakeup = 0.1 √(gd), and contacts nearer than 1.001: gaps
+    /// below 0.001 d. The wider, the fewer events, and the looser the deposit.
     fn default() -> Self {
         IsostaticSupport {
             descent: SlowDescent::default(),
-            range: 1.01,
+            range: 1.001,
         }
     }
 }
