@@ -173,6 +173,7 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
             scratch: Vec::new(),
             candidates: Vec::new(),
             vigil: Vigil::default(),
+            ear: None,
             model,
         };
         for id in 0..count as u32 {
