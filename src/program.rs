@@ -22,6 +22,7 @@ mod signals;
 mod sweep;
 mod table;
 mod validate;
+mod why;
 
 pub use criteria::Program;
 pub use error::ProgramError;
@@ -45,6 +46,7 @@ fn run_command(program: &Program) -> ExitCode {
         Command::Run(arguments) => run::run(&arguments, program),
         Command::Resume(arguments) => resume::resume(&arguments, program),
         Command::Sweep(arguments) => sweep::sweep(&arguments, program),
+        Command::Why(arguments) => why::why(&arguments, program),
         Command::Criteria => show::criteria(program),
         Command::Presets => show::presets(),
         Command::Preset { name } => show::preset(&name),

@@ -7,6 +7,7 @@ use clap::{Args, Parser, Subcommand};
 use crate::program::analyse::AnalyseArguments;
 use crate::program::bench::BenchArguments;
 use crate::program::sweep::{MOST_RUNS, Variation};
+use crate::program::why::WhyArguments;
 use crate::scenario::Assignment;
 
 const EXAMPLES: &str = "\
@@ -20,6 +21,7 @@ Examples:
                                                 many runs, on all cores
   grainfall draw runs/deposition-1 --time 50
   grainfall analyse runs/deposition-1           packing, contacts, motion: CSV and SVG
+  grainfall why runs/arch-1 --particle 1        asleep or awake, and why
   grainfall validate --quick                    known physics, in a minute
   grainfall bench gas                           what a collision costs
 
@@ -118,7 +120,7 @@ fn events(text: &str) -> Result<u64, String> {
 }
 
 /// A time that comes.
-fn instant(text: &str) -> Result<f64, String> {
+pub(super) fn instant(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
         Ok(time) if time.is_finite() => Ok(time),
         _ => Err("a finite number is allowed".to_owned()),
@@ -159,6 +161,8 @@ pub(super) enum Command {
     Check(CheckArguments),
     /// List the sleep criteria that a scenario can name
     Criteria,
+    /// Say what a grain of a run does, and why
+    Why(WhyArguments),
     /// Print the JSON Schema of scenarios
     Schema,
     /// Draw the grains of a run as SVG

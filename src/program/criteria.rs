@@ -15,6 +15,7 @@ use crate::policy::Criterion;
 use crate::program::drive::{self, Attempt, Job};
 use crate::program::error::ProgramError;
 use crate::program::signals::Signals;
+use crate::program::why::{Ask, Question, Report};
 use crate::scenario::{
     Dimension, Gravity, KnownCriterion, Origin, Problem, Scenario, Start, built_in_criteria,
 };
@@ -158,6 +159,15 @@ pub(super) trait Runner: Send + Sync {
         signals: &Signals,
         beforehand: &dyn Fn() -> Result<(), ProgramError>,
     ) -> Result<Attempt, ProgramError>;
+
+    /// Goes through a run, from the state of a checkpoint or from the start, and
+    /// reports on a grain; `None` if that is no place to begin.
+    fn why(
+        &self,
+        job: &Job,
+        state: Option<&[u8]>,
+        question: Question,
+    ) -> Result<Option<Report>, ProgramError>;
 }
 
 /// Where a policy comes from.
@@ -242,6 +252,41 @@ impl<C: Choice> Runner for C {
             Dimension::Three => with_model::<_, 3, _>(self, job, task)?,
         }
     }
+
+    fn why(
+        &self,
+        job: &Job,
+        state: Option<&[u8]>,
+        question: Question,
+    ) -> Result<Option<Report>, ProgramError> {
+        match job.scenario.dimension {
+            Dimension::Two => ask::<_, 2>(self, job, state, question),
+            Dimension::Three => ask::<_, 3>(self, job, state, question),
+        }
+    }
+}
+
+fn ask<C, const D: usize>(
+    choice: &C,
+    job: &Job,
+    state: Option<&[u8]>,
+    question: Question,
+) -> Result<Option<Report>, ProgramError>
+where
+    C: Choice,
+    C::Policy: StatePolicy<D>,
+{
+    let start = match state {
+        Some(_) => None,
+        None => Some(Start::<D>::new(&job.origin, &job.scenario)?),
+    };
+    let task = Ask {
+        job,
+        state,
+        start,
+        question,
+    };
+    with_model(choice, job, task)?
 }
 
 /// Does a task with the model of a scenario.

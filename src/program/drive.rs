@@ -3,6 +3,7 @@
 mod audits;
 mod files;
 mod pace;
+mod replay;
 mod report;
 mod state;
 
@@ -18,9 +19,11 @@ use crate::error::SetupError;
 use crate::model::{Model, Observer, Occurrence, Surroundings};
 use crate::observe::TrajectoryHash;
 use crate::output::{Checkpoint, CollapseReport, RunFolder, StoppedBy};
+use crate::particle::Particle;
 use crate::program::drive::audits::Audits;
 use crate::program::drive::files::{Files, Log};
 use crate::program::drive::pace::{Cadence, Pace, Samples};
+use crate::program::drive::replay::Diary;
 use crate::program::drive::state::{SavedRun, Unusable};
 use crate::program::error::ProgramError;
 use crate::program::means::NormalMean;
@@ -33,6 +36,7 @@ use crate::setup::OneByOne;
 use crate::time::Time;
 
 pub(super) use files::{begin, scenario_text};
+pub(super) use replay::Replay;
 
 /// No run goes on for longer, in √(d/g).
 const LATEST: f64 = 8.0e9;
@@ -81,6 +85,8 @@ struct Watch {
     /// When the latest event was.
     latest: Time,
     log: Option<Log>,
+    /// Of a run that is gone through again.
+    diary: Option<Diary>,
 }
 
 impl<const D: usize> Observer<D> for Watch {
@@ -90,6 +96,9 @@ impl<const D: usize> Observer<D> for Watch {
         self.latest = occurrence.time;
         if let Some(log) = &mut self.log {
             log.observe(occurrence, after);
+        }
+        if let Some(diary) = &mut self.diary {
+            diary.observe(occurrence, after);
         }
     }
 }
@@ -111,6 +120,25 @@ impl<const D: usize> Dropper<D> {
             dropped: 0,
             count: scenario.one_by_one().map_or(0, |drops| drops.count),
         })
+    }
+
+    fn has_more(&self) -> bool {
+        self.dropped < self.count
+    }
+
+    /// Drops the next grain; one that can't be dropped leaves everything as it was.
+    fn drop_into<M: Model<D>>(
+        &mut self,
+        simulation: &mut Simulation<M, D>,
+    ) -> Result<Particle<D>, SetupError> {
+        let heap = simulation.snapshot();
+        let top = analysis::highest_surface(&heap).unwrap_or(0.0);
+        let mut random = self.random.clone();
+        let grain = self.source.grain(top, &mut random)?;
+        simulation.insert(grain)?;
+        self.random = random;
+        self.dropped += 1;
+        Ok(grain)
     }
 }
 
@@ -179,6 +207,7 @@ pub(super) fn drive<M: Model<D>, const D: usize>(
             normal: NormalMean::new(&snapshot, simulation.time()),
             latest: simulation.time(),
             log,
+            diary: None,
         },
         rain: simulation.mode_counts().falling,
         simulation,
@@ -417,30 +446,18 @@ impl<M: Model<D>, const D: usize> Run<'_, M, D> {
 
     /// Whether a slice is to end when everything is at rest.
     fn ends_frozen(&self) -> bool {
-        let more = |dropper: &Dropper<D>| dropper.dropped < dropper.count;
-        self.scenario.stop.all_frozen.unwrap_or(true) || self.dropper.as_ref().is_some_and(more)
+        self.scenario.stop.all_frozen.unwrap_or(true)
+            || self.dropper.as_ref().is_some_and(Dropper::has_more)
     }
 
     /// Everything is at rest: drops the next grain, or ends the run.
     fn all_at_rest(&mut self) -> Option<End> {
-        let Some(dropper) = &mut self.dropper else {
+        let dropper = self.dropper.as_mut().filter(|dropper| dropper.has_more());
+        let Some(dropper) = dropper else {
             return Some(End::new(StoppedBy::AllFrozen, 0));
         };
-        if dropper.dropped == dropper.count {
-            return Some(End::new(StoppedBy::AllFrozen, 0));
-        }
-        let heap = self.simulation.snapshot();
-        let top = analysis::highest_surface(&heap).unwrap_or(0.0);
-        // A grain that can't be dropped leaves everything as it was.
-        let mut random = dropper.random.clone();
-        let inserted = dropper
-            .source
-            .grain(top, &mut random)
-            .and_then(|grain| self.simulation.insert(grain).map(|_| grain));
-        match inserted {
+        match dropper.drop_into(&mut self.simulation) {
             Ok(grain) => {
-                dropper.random = random;
-                dropper.dropped += 1;
                 self.watch.normal.add(&grain, self.simulation.time());
                 None
             }

@@ -57,6 +57,14 @@ pub enum ProgramError {
     /// A system for a validation or a measurement can't be set up.
     #[error("the system can't be set up: {0}")]
     SetUp(#[from] SetupError),
+    /// A run has no grain of this name.
+    #[error("{folder} has no grain {particle} at that time; grains are counted from 0")]
+    NoGrain {
+        /// The name.
+        particle: u32,
+        /// The run.
+        folder: String,
+    },
     /// None of the checkpoints of a run can be used.
     #[error("{folder} cannot be resumed:{reasons}\n{advice}")]
     Unresumable {
@@ -133,6 +141,7 @@ impl ProgramError {
             | ProgramError::UnknownSubject { .. }
             | ProgramError::CrystalCount { .. }
             | ProgramError::SetUp(_)
+            | ProgramError::NoGrain { .. }
             | ProgramError::Unresumable { .. }
             | ProgramError::Sweep(_)
             | ProgramError::NotAnalysed { .. }
