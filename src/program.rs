@@ -6,6 +6,7 @@
 mod analyse;
 mod bench;
 mod cli;
+mod compare;
 mod criteria;
 mod draw;
 mod drive;
@@ -46,6 +47,7 @@ fn run_command(program: &Program) -> ExitCode {
         Command::Run(arguments) => run::run(&arguments, program),
         Command::Resume(arguments) => resume::resume(&arguments, program),
         Command::Sweep(arguments) => sweep::sweep(&arguments, program),
+        Command::Compare(arguments) => compare::compare(&arguments, program),
         Command::Why(arguments) => why::why(&arguments, program),
         Command::Criteria => show::criteria(program),
         Command::Presets => show::presets(),

@@ -12,6 +12,7 @@ use serde::de::DeserializeOwned;
 use crate::boundary::Cuboid;
 use crate::model::{Model, StatePolicy};
 use crate::policy::Criterion;
+use crate::program::compare::{Census, TakeCensus};
 use crate::program::drive::{self, Attempt, Job};
 use crate::program::error::ProgramError;
 use crate::program::signals::Signals;
@@ -168,6 +169,10 @@ pub(super) trait Runner: Send + Sync {
         state: Option<&[u8]>,
         question: Question,
     ) -> Result<Option<Report>, ProgramError>;
+
+    /// Goes through a run again that had so many events, and counts what was
+    /// false.
+    fn census(&self, job: &Job, events: u64) -> Result<Census, ProgramError>;
 }
 
 /// Where a policy comes from.
@@ -264,6 +269,19 @@ impl<C: Choice> Runner for C {
             Dimension::Three => ask::<_, 3>(self, job, state, question),
         }
     }
+
+    fn census(&self, job: &Job, events: u64) -> Result<Census, ProgramError> {
+        match job.scenario.dimension {
+            Dimension::Two => {
+                let start = Start::<2>::new(&job.origin, &job.scenario)?;
+                with_model(self, job, TakeCensus { job, start, events })?
+            }
+            Dimension::Three => {
+                let start = Start::<3>::new(&job.origin, &job.scenario)?;
+                with_model(self, job, TakeCensus { job, start, events })?
+            }
+        }
+    }
 }
 
 fn ask<C, const D: usize>(
@@ -311,6 +329,19 @@ where
         Some(rotation) => task.run(|boundary| scenario.turning_model(rotation, policy, boundary)),
         None => task.run(|boundary| scenario.gravity_model(policy, boundary)),
     })
+}
+
+/// Does a task with the model of a scenario in which nobody sleeps. (It is one of
+/// those that are compiled anyway.)
+pub(super) fn continued_without_sleep<const D: usize, T: Task<D>>(
+    scenario: &Scenario,
+    task: T,
+) -> T::Output {
+    let never = Criterion::Never;
+    match &scenario.rotation {
+        Some(rotation) => task.run(|boundary| scenario.turning_model(rotation, never, boundary)),
+        None => task.run(|boundary| scenario.gravity_model(never, boundary)),
+    }
 }
 
 /// The scenario names a criterion that this program does not know. (It has been

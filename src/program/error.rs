@@ -57,6 +57,12 @@ pub enum ProgramError {
     /// A system for a validation or a measurement can't be set up.
     #[error("the system can't be set up: {0}")]
     SetUp(#[from] SetupError),
+    /// A list of criteria that is none.
+    #[error("`{policies}` is no list of criteria; write their names with commas between them")]
+    Policies {
+        /// The list.
+        policies: String,
+    },
     /// A run has no grain of this name.
     #[error("{folder} has no grain {particle} at that time; grains are counted from 0")]
     NoGrain {
@@ -142,6 +148,7 @@ impl ProgramError {
             | ProgramError::CrystalCount { .. }
             | ProgramError::SetUp(_)
             | ProgramError::NoGrain { .. }
+            | ProgramError::Policies { .. }
             | ProgramError::Unresumable { .. }
             | ProgramError::Sweep(_)
             | ProgramError::NotAnalysed { .. }

@@ -4,9 +4,10 @@ use std::collections::BTreeMap;
 
 use crate::boundary::Cuboid;
 use crate::engine::{Limits, Simulation, StopReason};
+use crate::error::SetupError;
 use crate::model::{Model, Observer, Occurrence, OccurrenceKind, Surroundings};
 use crate::observe::TrajectoryHash;
-use crate::particle::{Mode, ParticleId, Vector};
+use crate::particle::{Mode, Particle, ParticleId, Vector};
 use crate::program::drive::state::{SavedRun, Unusable};
 use crate::program::drive::{Dropper, Job, Watch, end_of};
 use crate::program::error::ProgramError;
@@ -114,6 +115,21 @@ impl<M: Model<D>, const D: usize> Replay<M, D> {
             Err(Unusable::State(_)) => Ok(None),
             Err(Unusable::Program(error)) => Err(error),
         }
+    }
+
+    /// From these grains, for as long as it is asked to go on.
+    pub(in crate::program) fn without_end(
+        model: M,
+        grains: Vec<Particle<D>>,
+        scenario: &Scenario,
+    ) -> Result<Self, SetupError> {
+        let simulation = Simulation::with_settings(model, grains, scenario.settings())?;
+        let replay = Replay::of(simulation, None, scenario);
+        Ok(Replay {
+            end: Time::NEVER,
+            events: u64::MAX,
+            ..replay
+        })
     }
 
     fn of(simulation: Simulation<M, D>, dropper: Option<Dropper<D>>, scenario: &Scenario) -> Self {
