@@ -3,7 +3,7 @@
 //! Bounds decide who is asked, never what is answered.
 
 use crate::engine::body::{LONG_AGO, World, flight_of, is_known, scale_at};
-use crate::engine::cells::Found;
+use crate::engine::cells::{Found, Link};
 use crate::engine::search::shift;
 use crate::engine::simulation::Simulation;
 use crate::model::{Crowd, Dynamics, Flight, LANES, Model, Nook, Predictor};
@@ -13,7 +13,7 @@ use crate::model::{Crowd, Dynamics, Flight, LANES, Model, Nook, Predictor};
 pub(super) struct Candidate<const D: usize> {
     /// Not before this, from now.
     bound: f64,
-    found: Found<D>,
+    link: Link<D>,
 }
 
 impl<M: Model<D>, const D: usize> Simulation<M, D> {
@@ -35,7 +35,8 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
             if bound > self.slots[particle as usize].contact - now {
                 break;
             }
-            let Candidate { found, .. } = near.swap_remove(place);
+            let Candidate { link, .. } = near.swap_remove(place);
+            let found = self.world.near.found(particle, link);
             if asked != Some(found) {
                 self.meet(particle, &found);
             }
@@ -68,27 +69,29 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
         let own = flight_of(model, particle, body).advanced(flown);
         if !(0.0..=LONG_AGO).contains(&flown) && !is_known(model, particle, body, flown, blur) {
             // Where it is now is not known well enough to leave anybody out.
-            let all = near.list(particle).iter();
-            candidates.extend(all.map(|&found| Candidate { bound: 0.0, found }));
+            let all = near.links(particle).iter();
+            candidates.extend(all.map(|&link| Candidate { bound: 0.0, link }));
             return;
         }
         let horizon = self.slots[particle as usize].contact - now;
         let place = own.start() - near.anchor(particle);
-        let (bed, movers) = near.bed(particle, bodies);
+        near.make_bed(particle, bodies);
+        let near = &*near;
+        let (bed, movers) = near.bed(particle);
         let slots = &self.slots;
-        let mut add = |answers: [f64; LANES], few: &[Found<D>]| {
-            for (bound, found) in answers.into_iter().zip(few) {
+        let mut add = |answers: [f64; LANES], few: &[Link<D>]| {
+            for (bound, link) in answers.into_iter().zip(few) {
                 // NaN says nothing, so it is not later than anything.
                 if bound == f64::INFINITY || bound > horizon {
                     continue;
                 }
                 // Later than its own bound, the other finds it anyway.
-                if bound > slots[found.particle as usize].bound() - now {
+                if bound > slots[link.particle() as usize].bound() - now {
                     continue;
                 }
                 candidates.push(Candidate {
                     bound: if bound > 0.0 { bound } else { 0.0 },
-                    found: *found,
+                    link: *link,
                 });
             }
         };
@@ -107,8 +110,9 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
             add(model.predictor().not_before_resting(&nook), few);
         }
         for few in movers.chunks(LANES) {
-            let found: [Found<D>; LANES] =
+            let found: [Link<D>; LANES] =
                 std::array::from_fn(|lane| few[if lane < few.len() { lane } else { 0 }]);
+            let found = found.map(|link| near.found(particle, link));
             let theirs = found.map(|other| &bodies[other.particle as usize]);
             let after = theirs.map(|body| now.since(body.since));
             let shifted = found.iter().any(|other| other.turns != [0; D]);

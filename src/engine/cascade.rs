@@ -308,7 +308,7 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
         };
         let near = &self.world.near;
         if near.slack(particle, &one.position) > margin {
-            near.list(particle).iter().for_each(look);
+            near.list(particle).for_each(|found| look(&found));
         } else {
             near.for_each_within(particle, farthest, |found| look(&found));
         }

@@ -50,8 +50,7 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
             // near contact spares work on all others.
             let mut left = None;
             if let Partner::Particle(last) = self.traces[particle as usize].partner {
-                let mut list = self.world.near.list(particle).iter();
-                left = list.find(|other| other.particle == last).copied();
+                left = self.world.near.listed(particle, last);
             }
             if let Some(other) = &left {
                 self.meet(particle, other);
@@ -73,7 +72,7 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
     fn tell_neighbours(&mut self, particle: u32) {
         let mut found = std::mem::take(&mut self.scratch);
         found.clear();
-        found.extend_from_slice(self.world.near.list(particle));
+        found.extend(self.world.near.list(particle));
         for other in &found {
             if self.world.bodies[other.particle as usize].mode.is_mobile()
                 && self.meet(other.particle, &other.seen_from(particle))
