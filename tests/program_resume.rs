@@ -391,7 +391,7 @@ fn damaged_checkpoints_are_refused_by_name() {
     let cases: [(&[u8], &str); 4] = [
         (&truncated, "truncated"),
         (&corrupted, "corrupted"),
-        (&newer, "format 2"),
+        (&newer, "format 3"),
         (b"picture", "no checkpoint"),
     ];
     for (bytes, said_of_it) in cases {

@@ -142,6 +142,37 @@ impl<const D: usize> Neighbours<D> {
         self.cells.found(particle, link)
     }
 
+    /// From the image of a grain in the grid to the one that is stored, in d.
+    #[inline]
+    pub(super) fn home_shift(&self, particle: u32) -> Vector<D> {
+        self.shift(self.cells.turns(particle))
+    }
+
+    /// What to add to the place of a grain in the grid to get the image of a
+    /// link, in d.
+    #[inline]
+    pub(super) fn link_shift(&self, link: Link<D>) -> Vector<D> {
+        self.shift(Link::<D>::turns_of(link.image()))
+    }
+
+    #[inline]
+    fn shift(&self, turns: [i32; D]) -> Vector<D> {
+        let mut shift = Vector::zeros();
+        if turns != [0; D] {
+            for axis in 0..D {
+                shift[axis] = f64::from(turns[axis]) * self.periods[axis];
+            }
+        }
+        shift
+    }
+
+    /// From the image of a grain in the grid to the one that is stored, in
+    /// periods.
+    #[inline]
+    pub(super) fn turns(&self, particle: u32) -> [i32; D] {
+        self.cells.turns(particle)
+    }
+
     /// The place that a grain is tied to, in the image it is stored in.
     #[inline]
     pub(super) fn anchor(&self, particle: u32) -> Vector<D> {

@@ -47,9 +47,12 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
             self.tell_neighbours(particle);
         } else {
             // The grain just left comes first: it is often the next, and a
-            // near contact spares work on all others.
+            // near contact spares work on all others. Where the two see each other
+            // move uniformly they part for ever, and a glance will do.
             let mut left = None;
-            if let Partner::Particle(last) = self.traces[particle as usize].partner {
+            if let Partner::Particle(last) = self.traces[particle as usize].partner
+                && !self.world.see_each_other(particle, last)
+            {
                 left = self.world.near.listed(particle, last);
             }
             if let Some(other) = &left {
@@ -63,7 +66,9 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
     }
 
     pub(super) fn enqueue(&mut self, particle: u32) {
-        let key = self.slots[particle as usize].key(particle);
+        let slot = &self.slots[particle as usize];
+        let key = slot.key(particle);
+        self.world.glances.set_bound(particle, slot.bound());
         self.queue.set(particle, key);
         self.vigil.touch(particle);
     }
