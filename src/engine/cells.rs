@@ -8,7 +8,10 @@
 
 mod check;
 mod link;
+mod rooms;
 mod saved;
+
+use rooms::{Guest, Rooms};
 
 pub(super) use link::Link;
 pub(super) use saved::SavedCells;
@@ -50,6 +53,12 @@ impl Axis {
     #[inline]
     fn length(&self) -> f64 {
         self.period.map_or(0.0, |period| period.length)
+    }
+
+    /// Where a cell begins.
+    #[inline]
+    fn corner(&self, cell: i32) -> f64 {
+        self.origin + f64::from(cell) * self.edge
     }
 
     /// The cell of the grid that a cell is an image of, and how many periods
@@ -95,8 +104,7 @@ struct Seat<const D: usize> {
 #[derive(Clone, Debug)]
 pub(super) struct Cells<const D: usize> {
     axes: [Axis; D],
-    /// Who is in each cell of the grid.
-    rooms: Vec<Vec<u32>>,
+    rooms: Rooms<D>,
     spots: Vec<Spot<D>>,
     seats: Vec<Seat<D>>,
 }
@@ -138,7 +146,7 @@ impl<const D: usize> Cells<D> {
         });
         let mut cells = Cells {
             axes,
-            rooms: vec![Vec::new(); stride],
+            rooms: Rooms::new(stride, longest(&axes)),
             spots: Vec::with_capacity(positions.len()),
             seats: Vec::with_capacity(positions.len()),
         };
@@ -188,6 +196,7 @@ impl<const D: usize> Cells<D> {
     /// Says how far a grain reaches from where it is filed.
     pub(super) fn set_reach(&mut self, particle: u32, reach: f64) {
         self.spots[particle as usize].reach = reach;
+        self.relink(particle);
     }
 
     /// Seats one more grain.
@@ -267,6 +276,7 @@ impl<const D: usize> Cells<D> {
         self.spots[particle as usize] = Spot { home, reach };
         if seat.cell == self.seats[particle as usize].cell {
             self.seats[particle as usize] = seat;
+            self.relink(particle);
         } else {
             self.unlink(particle);
             self.seats[particle as usize] = seat;
@@ -296,14 +306,16 @@ impl<const D: usize> Cells<D> {
         }
     }
 
-    /// Calls `visit` for every grain within so many rings of cells, with where it
-    /// is filed and the squared distance from the place of `particle`, itself
-    /// left out.
+    /// Calls `visit` for every grain within so many rings of cells whose place is
+    /// nearer to that of `particle` than both `reach` together with its own, and
+    /// perhaps for some that are farther away: with where it is filed, and the
+    /// squared distance. Itself is left out.
     #[inline]
-    pub(super) fn for_each_adjacent(
+    pub(super) fn for_each_in_reach(
         &self,
         particle: u32,
         rings: i32,
+        reach: f64,
         mut visit: impl FnMut(Link<D>, &Spot<D>, f64),
     ) {
         let own = self.spots[particle as usize].home;
@@ -320,15 +332,19 @@ impl<const D: usize> Cells<D> {
                     continue;
                 }
                 let (within, beyond) = axis.wrapped(cell);
+                let place = own[k] - f64::from(beyond) * axis.length();
                 steps[k][ends[k]] = Step {
                     row: within as usize * axis.stride,
                     image: Link::<D>::part(beyond) << Link::<D>::place(k),
-                    place: own[k] - f64::from(beyond) * axis.length(),
+                    place,
+                    told: self.rooms.told(place - axis.corner(within)),
                 };
                 ends[k] += 1;
             }
         }
+        let told_reach = self.rooms.told_reach(reach);
         let mut here = own;
+        let mut told = [0.0; D];
         let mut at = [0; D];
         loop {
             let (mut row, mut image) = (0, 0);
@@ -337,16 +353,20 @@ impl<const D: usize> Cells<D> {
                 row += step.row;
                 image += step.image;
                 here[axis] = step.place;
+                told[axis] = step.told;
             }
             for step in &steps[0][..ends[0]] {
                 here[0] = step.place;
-                for &other in &self.rooms[row + step.row] {
-                    let spot = &self.spots[other as usize];
-                    let squared = (spot.home - here).norm_squared();
-                    if other != particle {
+                told[0] = step.told;
+                let cell = row + step.row;
+                self.rooms.near(cell, &told, told_reach, |other| {
+                    if other != particle
+                        && let Some(spot) = self.spots.get(other as usize)
+                    {
+                        let squared = (spot.home - here).norm_squared();
                         visit(Link::new(other, image + step.image), spot, squared);
                     }
-                }
+                });
             }
             // The next row, the second axis running fastest.
             let mut axis = 1;
@@ -371,18 +391,14 @@ impl<const D: usize> Cells<D> {
         mut visit: impl FnMut(Link<D>, &Spot<D>, f64),
     ) {
         let own = self.spots[particle as usize].home;
-        self.for_each_cell(particle, rings, |turns, room| {
-            for &other in room {
-                let spot = &self.spots[other as usize];
-                let mut apart = spot.home - own;
-                for axis in 0..D {
-                    apart[axis] += f64::from(turns[axis]) * self.axes[axis].length();
-                }
-                if other != particle {
-                    let image = Link::<D>::image_of(&turns);
-                    visit(Link::new(other, image), spot, apart.norm_squared());
-                }
+        self.for_each_cell(particle, rings, |turns, other| {
+            let spot = &self.spots[other as usize];
+            let mut apart = spot.home - own;
+            for axis in 0..D {
+                apart[axis] += f64::from(turns[axis]) * self.axes[axis].length();
             }
+            let image = Link::<D>::image_of(&turns);
+            visit(Link::new(other, image), spot, apart.norm_squared());
         });
     }
 
@@ -390,24 +406,19 @@ impl<const D: usize> Cells<D> {
     /// itself left out.
     pub(super) fn for_each_near(&self, particle: u32, rings: i32, mut visit: impl FnMut(Found<D>)) {
         let own = self.turns(particle);
-        self.for_each_cell(particle, rings, |turns, room| {
-            for &other in room {
-                if other != particle {
-                    let theirs = self.turns(other);
-                    let turns = std::array::from_fn(|axis| turns[axis] + own[axis] - theirs[axis]);
-                    visit(Found {
-                        particle: other,
-                        turns,
-                    });
-                }
-            }
+        self.for_each_cell(particle, rings, |turns, other| {
+            let theirs = self.turns(other);
+            visit(Found {
+                particle: other,
+                turns: std::array::from_fn(|axis| turns[axis] + own[axis] - theirs[axis]),
+            });
         });
     }
 
-    /// Calls `visit` for every cell within `rings` of that of `particle`: how
-    /// many periods away it is, and who is there.
+    /// Calls `visit` for every other grain within `rings` cells of that of
+    /// `particle`: how many periods away its cell is, and who it is.
     #[inline]
-    fn for_each_cell(&self, particle: u32, rings: i32, mut visit: impl FnMut([i32; D], &[u32])) {
+    fn for_each_cell(&self, particle: u32, rings: i32, mut visit: impl FnMut([i32; D], u32)) {
         let centre = self.seats[particle as usize].cell;
         let mut low = centre.map(|c| c - rings);
         let mut high = centre.map(|c| c + rings);
@@ -429,7 +440,11 @@ impl<const D: usize> Cells<D> {
                 index += cell as usize * self.axes[axis].stride;
                 turns[axis] = turned;
             }
-            visit(turns, &self.rooms[index]);
+            self.rooms.each(index, |other| {
+                if other != particle {
+                    visit(turns, other);
+                }
+            });
             let mut axis = 0;
             while axis < D && at[axis] == high[axis] {
                 at[axis] = low[axis];
@@ -449,17 +464,29 @@ impl<const D: usize> Cells<D> {
             .sum()
     }
 
+    /// A grain as the others in its cell know it.
+    fn guest(&self, particle: u32) -> Guest<D> {
+        let (seat, spot) = (
+            &self.seats[particle as usize],
+            &self.spots[particle as usize],
+        );
+        let corner = Vector::from_fn(|k, _| self.axes[k].corner(seat.cell[k]));
+        self.rooms.guest(&(spot.home - corner), spot.reach)
+    }
+
     fn link(&mut self, particle: u32) {
-        let index = self.index_of(particle);
-        self.rooms[index].push(particle);
+        let (cell, guest) = (self.index_of(particle), self.guest(particle));
+        self.rooms.enter(cell, particle, &guest);
+    }
+
+    /// A grain is filed at another place in its cell, or reaches farther.
+    fn relink(&mut self, particle: u32) {
+        let (cell, guest) = (self.index_of(particle), self.guest(particle));
+        self.rooms.shift(cell, particle, &guest);
     }
 
     fn unlink(&mut self, particle: u32) {
-        let index = self.index_of(particle);
-        let room = &mut self.rooms[index];
-        if let Some(place) = room.iter().position(|other| *other == particle) {
-            room.swap_remove(place);
-        }
+        self.rooms.leave(self.index_of(particle), particle);
     }
 }
 
@@ -470,6 +497,13 @@ struct Step {
     image: u32,
     /// Where the grain is, seen from that cell.
     place: f64,
+    /// The same from its corner.
+    told: f32,
+}
+
+/// The longest edge.
+fn longest(axes: &[Axis]) -> f64 {
+    axes.iter().map(|axis| axis.edge).fold(0.0, f64::max)
 }
 
 /// Lower corner and lengths of a box that holds all positions, with periods for

@@ -328,7 +328,7 @@ impl<const D: usize> Neighbours<D> {
         list.clear();
         let own = self.cells.spot(particle).reach;
         self.cells
-            .for_each_adjacent(particle, self.rings, |link, spot, squared| {
+            .for_each_in_reach(particle, self.rings, own, |link, spot, squared| {
                 let reach = own + spot.reach;
                 if squared < reach * reach {
                     list.push(link);
@@ -340,8 +340,9 @@ impl<const D: usize> Neighbours<D> {
     /// who lists it.
     fn forget_at_rest(&mut self, particle: u32) {
         let mut partners = Vec::new();
+        let farthest = self.largest + self.longest;
         self.cells
-            .for_each_adjacent(particle, self.rings, |link, _, squared| {
+            .for_each_in_reach(particle, self.rings, farthest, |link, _, squared| {
                 let leash = self.ties[link.particle() as usize].leash;
                 // Farther off than this it is on nobody's list, see `release`.
                 let reach = self.largest + leash;

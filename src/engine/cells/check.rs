@@ -27,7 +27,7 @@ impl<const D: usize> Cells<D> {
                 ));
             }
         }
-        if !self.rooms[self.index_of(particle)].contains(&particle) {
+        if !self.rooms.holds(self.index_of(particle), particle) {
             return Err(format!("grain {particle} is not linked in its cell"));
         }
         Ok(())

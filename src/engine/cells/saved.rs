@@ -4,7 +4,7 @@
 use nalgebra::SVector;
 use serde::{Deserialize, Serialize};
 
-use crate::engine::cells::{Axis, Cells, Seat, Spot};
+use crate::engine::cells::{Axis, Cells, Rooms, Seat, Spot, longest};
 use crate::model::Boundary;
 use crate::particle::Vector;
 
@@ -36,7 +36,7 @@ impl<const D: usize> Cells<D> {
                 .iter()
                 .map(|seat| (SVector::from(seat.cell), SVector::from(seat.turns)))
                 .collect(),
-            order: self.rooms.iter().flatten().copied().collect(),
+            order: self.rooms.all(),
         }
     }
 
@@ -85,7 +85,7 @@ impl<const D: usize> Cells<D> {
         }
         let mut cells = Cells {
             axes,
-            rooms: vec![Vec::new(); stride],
+            rooms: Rooms::new(stride, longest(&axes)),
             spots: vec![
                 Spot {
                     home: Vector::zeros(),
@@ -110,5 +110,6 @@ impl<const D: usize> Cells<D> {
     pub(in crate::engine) fn file_at(&mut self, particle: u32, home: &Vector<D>, reach: f64) {
         let home = *home;
         self.spots[particle as usize] = Spot { home, reach };
+        self.relink(particle);
     }
 }
