@@ -58,7 +58,7 @@
 //! | [`setup`] | where grains come from: rain, gas, base, one by one |
 //! | [`analysis`] | what is measured of grains at rest: heights, packing fraction |
 //! | [`particle`], [`time`], [`error`] | grains, instants, refusals |
-//! | `scenario`, `output`, `draw`, `program` | scenario files, run folders, pictures, the command line |
+//! | `scenario`, `output`, `draw`, `plot`, `program` | scenario files, run folders, pictures, plots, the command line |
 //!
 //! # Features
 //!
@@ -84,6 +84,8 @@ pub mod time;
 pub mod draw;
 #[cfg(feature = "program")]
 pub mod output;
+#[cfg(feature = "program")]
+pub mod plot;
 #[cfg(feature = "program")]
 pub mod program;
 #[cfg(feature = "program")]

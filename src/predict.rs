@@ -29,12 +29,14 @@ mod real;
 mod refine;
 mod scale;
 mod screen;
+mod turning;
 mod wall;
 
 pub use descent::{Descent, cubic_descent, quadratic_descent, quartic_descent};
 pub use double_double::DoubleDouble;
 pub use gap::{CERTAIN, GapPolynomial, Relative};
 pub use real::Real;
+pub use turning::Turning;
 
 use crate::model::{
     Approach, Crowd, Encounter, Forecast, LANES, Nook, PolynomialFlight, Predictor, Shape, Wall,
@@ -109,7 +111,10 @@ impl<const D: usize, F: PolynomialFlight<D>> Predictor<D, F> for Polynomial {
                 curvature,
                 speed,
                 acceleration,
-            } => wall::general(encounter, curvature, speed, acceleration),
+            } => {
+                let own = encounter.flight.acceleration().norm_squared().sqrt();
+                wall::general(encounter, own, curvature, speed, acceleration)
+            }
         }
     }
 }

@@ -35,15 +35,16 @@ mod suggest;
 mod tree;
 mod validate;
 
-pub use build::{FloatingModel, GravityModel, Start};
+pub use build::{Drumming, FloatingModel, GravityModel, Start, TurningModel};
 pub use error::{Problem, Refusal, ScenarioError};
 pub use path::{Path, Segment};
 pub use place::{Line, Place};
 pub use presets::{Preset, presets};
 pub use read::{Format, Origin, read, read_text};
 pub use schema::{
-    Base, Dimension, DimensionError, Gas, Gravity, Guards, OneByOne, Output, Parameters, Phase,
-    Rain, Scenario, SelfCheck, Side, Sleep, Source, SourceKind, Stop, Threshold,
+    Base, Dimension, DimensionError, Drum, Gas, Gravity, Guards, OneByOne, Output, Parameters,
+    Phase, Rain, Rotation, Scenario, SelfCheck, Side, Sleep, Source, SourceKind, Stop, Threshold,
+    Turns,
 };
 pub use set::Assignment;
 pub use suggest::nearest;

@@ -1,4 +1,4 @@
-//! Initial states: a rain, a gas, a crystal, a rough base, grains one by one.
+//! Initial states: a rain, a gas, a crystal, a rough base, a drum, grains one by one.
 //!
 //! Every generator holds parameters, draws from a [`ChaCha8Rng`] that the
 //! caller seeds, and returns grains ready for a simulation: none overlap, not
@@ -22,6 +22,7 @@
 
 mod base;
 mod crystal;
+mod drum;
 mod gas;
 mod growth;
 mod insertion;
@@ -34,6 +35,7 @@ mod velocities;
 
 pub use base::Base;
 pub use crystal::Crystal;
+pub use drum::Drum;
 pub use gas::Gas;
 pub use one_by_one::OneByOne;
 pub use rain::Rain;

@@ -8,13 +8,15 @@ use common::{close, free, gas_grains, heavy, periodic_laterally, rain_on_base, r
 use common::{watch, what};
 use grainfall::boundary::{Cuboid, Side};
 use grainfall::collide::Restitution;
-use grainfall::dynamics::{ForceFree, Growing, UniformGravity};
+use grainfall::dynamics::{
+    ForceFree, Growing, Trochoid, TurningGravity, TurningGround, UniformGravity,
+};
 use grainfall::engine::{EnergyLedger, Guards, Limits, Settings, Simulation, StopReason};
-use grainfall::model::{Boundary, Model, Parts};
+use grainfall::model::{Boundary, Dynamics, Model, Parts};
 use grainfall::policy::{EnergyStore, Never, SelfCheck, SlowDescent};
-use grainfall::predict::Polynomial;
+use grainfall::predict::{Polynomial, Turning};
 use grainfall::setup::Sizes;
-use grainfall::{Mode, Particle, Vector};
+use grainfall::{Mode, Particle, Time, Vector};
 
 const MIXED: Sizes = Sizes::Bimodal {
     small: 0.7,
@@ -320,6 +322,60 @@ fn the_ledger_explains_a_chute_with_a_paddle() {
     let simulation = Simulation::new(model, grains).unwrap();
     let ledger = explains_every_event(simulation, gravity, 3000);
     assert!(ledger.crossing > 0.0 && ledger.moving != 0.0, "{ledger:?}");
+}
+
+/// Grains in a ring of fixed ones, in the plane.
+fn ring(velocities: f64) -> Vec<Particle<2>> {
+    let turn = |k: i32| libm::sincos(0.25 * core::f64::consts::PI * f64::from(k) / 3.0);
+    let fixed = (0..24).map(|k| {
+        let (sin, cos) = turn(k);
+        Particle::fixed(Vector::<2>::new(4.0 * cos, 4.0 * sin))
+    });
+    let free = (0..12).map(|k| {
+        let place = Vector::<2>::new(1.1 * f64::from(k % 4) - 1.6, 1.1 * f64::from(k / 4) - 1.1);
+        Particle::new(place, Vector::<2>::new(0.1 * f64::from(k), velocities))
+    });
+    fixed.chain(free).collect()
+}
+
+fn turning<Y: Dynamics<2, Flight = Trochoid<2>>>(dynamics: Y) -> EnergyLedger {
+    let policy = SlowDescent {
+        self_check: Some(SelfCheck::default()),
+        ..SlowDescent::with_threshold(0.2)
+    };
+    let model = Parts {
+        dynamics,
+        predictor: Turning,
+        collision_rule: rule(1.0e-3),
+        state_policy: policy,
+        boundary: Cuboid::new([Side::Open, Side::Open]).unwrap(),
+    };
+    let mut simulation = Simulation::new(model, ring(0.2)).unwrap();
+    let why = simulation.run(&Limits::until(Time::from_units(20.0)), &mut ());
+    assert_eq!(why, StopReason::Time);
+    let counts = simulation.counts();
+    assert!(counts.sleep > 20 && counts.check_wake > 10, "{counts:?}");
+    assert!(simulation.max_overlap() < 1.0e-11);
+    let ledger = simulation.energy_ledger();
+    assert!(ledger.relative_error().abs() < 1.0e-12, "{ledger:?}");
+    ledger
+}
+
+#[test]
+fn the_ledger_explains_gravity_that_turns() {
+    let gravity = -Vector::<2>::y();
+    let ledger = turning(TurningGravity::new(gravity, 0.3, [0, 1]));
+    // It keeps the heap in motion.
+    assert!(ledger.field > 1.0 && ledger.moving == 0.0, "{ledger:?}");
+}
+
+#[test]
+fn the_ledger_explains_ground_that_turns() {
+    let gravity = -Vector::<2>::y();
+    let ground = TurningGround::new(gravity, -0.3, [0, 1], Vector::<2>::zeros());
+    let ledger = turning(ground);
+    assert!(ledger.moving > 1.0, "{ledger:?}");
+    assert!(ledger.field.abs() < 1.0e-9, "{ledger:?}");
 }
 
 #[test]

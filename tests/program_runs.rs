@@ -121,6 +121,7 @@ fn a_deposition_leaves_a_folder() {
                 "moving",
                 "growth",
                 "crossing",
+                "field",
                 "inserted",
                 "sum",
                 "relative_error",

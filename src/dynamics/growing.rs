@@ -24,6 +24,8 @@ impl<const D: usize, Y: Dynamics<D>> Dynamics<D> for Growing<Y> {
 
     const GROWS: bool = true;
 
+    const DRIVES: bool = Y::DRIVES;
+
     fn flight(&self, motion: &Motion<D>, since: Time) -> Y::Flight {
         self.inner.flight(motion, since)
     }

@@ -89,6 +89,28 @@ impl<const D: usize> World<D> {
         self.ledger.add(entry, gain(mass, before, after));
     }
 
+    /// What the energy of a grain has changed by since its last event though
+    /// nothing has happened to it, in mgd, and where that belongs: ground that
+    /// moves has carried it, or else gravity has changed.
+    pub(super) fn work_in_flight<M: Model<D>>(&self, model: &M, particle: u32) -> (Entry, f64) {
+        let body = &self.bodies[particle as usize];
+        let entry = match body.mode {
+            Mode::Fixed => return (Entry::Field, 0.0),
+            Mode::Frozen if !body.still => Entry::Moving,
+            Mode::Frozen | Mode::Normal | Mode::Falling => Entry::Field,
+        };
+        let dynamics = model.dynamics();
+        let (before, after) = (dynamics.gravity(body.since), dynamics.gravity(self.clock));
+        let now = self.particle_now(model, particle);
+        let start: Vector<D> = self.flight(model, particle).start_velocity();
+        let mut work = gain(now.mass, &start, &now.velocity);
+        if body.mode != Mode::Falling {
+            work -= now.mass * after.dot(&(now.position - body.position));
+        }
+        work -= now.mass * (after - before).dot(&body.position);
+        (entry, work)
+    }
+
     /// A grain at the instant the clock shows, in the image it is stored in.
     pub(super) fn particle_now<M: Model<D>>(&self, model: &M, particle: u32) -> Particle<D> {
         let body = &self.bodies[particle as usize];
@@ -113,6 +135,10 @@ impl<const D: usize> World<D> {
         velocity: Vector<D>,
         mode: Mode,
     ) {
+        if M::Dynamics::DRIVES {
+            let (entry, work) = self.work_in_flight(model, particle);
+            self.ledger.add(entry, work);
+        }
         let body = &mut self.bodies[particle as usize];
         if body.mode == Mode::Falling {
             let weight = model.dynamics().gravity(self.clock) * self.masses[particle as usize];

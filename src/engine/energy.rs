@@ -1,7 +1,7 @@
 //! Energies, and the filing of what changes them.
 
 use crate::engine::body::gain;
-use crate::engine::ledger::{EnergyLedger, Entry, Sum};
+use crate::engine::ledger::{EnergyLedger, Entry, Ledger, Sum};
 use crate::engine::simulation::Simulation;
 use crate::model::{Dynamics, Impact, Model, Obstacle, Rebound};
 use crate::particle::{Mode, Particle, ParticleId};
@@ -25,8 +25,7 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
     #[must_use]
     pub fn energy_ledger(&self) -> EnergyLedger {
         let mut now = Sum::default();
-        let mut falling = Sum::default();
-        let mut crossing = Sum::default();
+        let mut since = Ledger::default();
         let gravity = self.model.dynamics().gravity(self.world.clock);
         for (index, body) in self.world.bodies.iter().enumerate() {
             if body.mode == Mode::Fixed {
@@ -35,15 +34,20 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
             let stored = self.world.particle_now(&self.model, index as u32);
             let weight = gravity * stored.mass;
             if body.mode == Mode::Falling {
-                falling.add(weight.dot(&(body.position - stored.position)));
+                since.add(Entry::Fall, weight.dot(&(body.position - stored.position)));
+            }
+            if M::Dynamics::DRIVES {
+                let (entry, work) = self.world.work_in_flight(&self.model, index as u32);
+                since.add(entry, work);
             }
             let shown = self.particle(ParticleId(index as u32));
-            crossing.add(weight.dot(&(stored.position - shown.position)));
+            since.add(
+                Entry::Crossing,
+                weight.dot(&(stored.position - shown.position)),
+            );
             now.add(self.energy_of(&shown));
         }
-        self.world
-            .ledger
-            .read(now.value(), falling.value(), crossing.value())
+        self.world.ledger.read(now.value(), &since)
     }
 
     /// Kinetic and potential energy of a grain, in mgd; none if it is fixed.

@@ -10,8 +10,8 @@ use serde::{Deserialize, Serialize};
 /// doi:10.1002/zamm.19740540106) from the velocities and places that the grains
 /// had before and after; no entry is what is left over. So the
 /// [`sum`](EnergyLedger::sum) and the [`change`](EnergyLedger::change) differ by
-/// rounding, and by what a user's own dynamics does to the energy in flight: a
-/// field that changes in time does work.
+/// rounding, and by what a user's own dynamics does to the energy in flight
+/// without saying so ([`Dynamics::DRIVES`](crate::model::Dynamics::DRIVES)).
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct EnergyLedger {
     /// Collisions of two mobile grains.
@@ -38,6 +38,9 @@ pub struct EnergyLedger {
     /// Potential energy gained by re-entering through periodic sides, if
     /// gravity has a component along their axis.
     pub crossing: f64,
+    /// Work of gravity that changes in time: what the energy of grains changes by
+    /// between events. A potential −m g·x changes with g even if nothing moves.
+    pub field: f64,
     /// Energy of grains that were inserted.
     pub inserted: f64,
     /// Not in the sum: what the elastic cut-off V_c spared, that is, what its
@@ -51,7 +54,7 @@ pub struct EnergyLedger {
 
 impl EnergyLedger {
     /// The entries that make up the sum.
-    fn entries(&self) -> [f64; 12] {
+    fn entries(&self) -> [f64; 13] {
         [
             self.pair,
             self.frozen,
@@ -64,6 +67,7 @@ impl EnergyLedger {
             self.moving,
             self.growth,
             self.crossing,
+            self.field,
             self.inserted,
         ]
     }
@@ -135,6 +139,7 @@ pub(super) enum Entry {
     Moving,
     Growth,
     Crossing,
+    Field,
     Inserted,
     ElasticSpared,
     AtStart,
@@ -152,10 +157,11 @@ impl Ledger {
         self.sums[entry as usize].add(energy);
     }
 
-    /// The entries so far, with the total energy now, and what grains in
-    /// flight have changed since their last events.
-    pub(super) fn read(&self, now: f64, falling: f64, crossing: f64) -> EnergyLedger {
-        let value = |entry: Entry| self.sums[entry as usize].value();
+    /// The entries with the total energy now; `since` has what grains in flight
+    /// have changed since their last events.
+    pub(super) fn read(&self, now: f64, since: &Ledger) -> EnergyLedger {
+        let value =
+            |entry: Entry| self.sums[entry as usize].value() + since.sums[entry as usize].value();
         EnergyLedger {
             pair: value(Entry::Pair),
             frozen: value(Entry::Frozen),
@@ -163,11 +169,12 @@ impl Ledger {
             wall: value(Entry::Wall),
             sleep: value(Entry::Sleep),
             given_back: value(Entry::GivenBack),
-            fall: value(Entry::Fall) + falling,
+            fall: value(Entry::Fall),
             guard: value(Entry::Guard),
             moving: value(Entry::Moving),
             growth: value(Entry::Growth),
-            crossing: value(Entry::Crossing) + crossing,
+            crossing: value(Entry::Crossing),
+            field: value(Entry::Field),
             inserted: value(Entry::Inserted),
             elastic_spared: value(Entry::ElasticSpared),
             at_start: value(Entry::AtStart),

@@ -59,6 +59,51 @@ pub trait PolynomialFlight<const D: usize>: Flight<D> {
     fn acceleration(&self) -> Vector<D>;
 }
 
+/// Where a flight gets to in the long run: from its start by u t + s t²/2, to
+/// within a radius, at any time t.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Drift<const D: usize> {
+    /// u, in √(gd).
+    pub velocity: Vector<D>,
+    /// s, in g.
+    pub acceleration: Vector<D>,
+    /// The radius, in d; infinite if nothing is known.
+    pub radius: f64,
+}
+
+/// A flight under a constant acceleration and one that turns at a constant rate:
+///
+/// a(t) = s + p cos Ωt + p⟂ sin Ωt, with p in the plane in which it turns.
+///
+/// Under gravity that turns, p is gravity; a grain carried on a circle has
+/// p = −Ω²ρ, ρ being the vector to it from the axis.
+pub trait TurningFlight<const D: usize>: Flight<D> {
+    /// s: the constant part of the acceleration, in g.
+    fn steady(&self) -> Vector<D>;
+
+    /// p: the part that turns, as it is at the start, in g.
+    fn turning(&self) -> Vector<D>;
+
+    /// Ω: how fast it turns, in √(g/d). The same for all flights of a model.
+    fn rate(&self) -> f64;
+
+    /// It turns from the first of these axes to the second. The same for all
+    /// flights of a model.
+    fn plane(&self) -> [usize; 2];
+
+    /// Until when it is so, in √(d/g): what accelerates it may change at once then.
+    fn changes_after(&self) -> f64 {
+        f64::INFINITY
+    }
+
+    /// Where it gets to in the long run.
+    fn drift(&self) -> Drift<D>;
+
+    /// True if what accelerates the two is the same, so that they accelerate
+    /// alike at all times, however their accelerations have been rounded.
+    fn accelerates_like(&self, other: &Self) -> bool;
+}
+
 /// How grains fly: the equation of motion between collisions.
 ///
 /// The generic type names are: `D` the dimension.
@@ -69,6 +114,11 @@ pub trait Dynamics<const D: usize> {
     /// Whether diameters change in time. If false (the default)
     /// [`growth_rate`](Dynamics::growth_rate) is never asked and costs nothing.
     const GROWS: bool = false;
+
+    /// Whether energy changes in flight: gravity that changes in time does work,
+    /// and so does ground that carries frozen grains along. If false (the
+    /// default) nothing is summed.
+    const DRIVES: bool = false;
 
     /// The motion from `since` on of a grain that is as `motion` says.
     fn flight(&self, motion: &Motion<D>, since: Time) -> Self::Flight;

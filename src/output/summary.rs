@@ -204,6 +204,9 @@ pub struct EnergyReport {
     pub growth: f64,
     /// By crossing periodic sides against which gravity leans.
     pub crossing: f64,
+    /// Work of gravity that turns.
+    #[serde(default)]
+    pub field: f64,
     /// By grains that were inserted.
     pub inserted: f64,
     /// All of these together.
@@ -233,6 +236,7 @@ impl From<EnergyLedger> for EnergyReport {
             moving: plain(ledger.moving),
             growth: plain(ledger.growth),
             crossing: plain(ledger.crossing),
+            field: plain(ledger.field),
             inserted: plain(ledger.inserted),
             sum: plain(ledger.sum()),
             relative_error: plain(ledger.relative_error()),
@@ -256,6 +260,7 @@ impl fmt::Display for EnergyReport {
             ("moving", self.moving),
             ("growth", self.growth),
             ("crossing", self.crossing),
+            ("field", self.field),
             ("inserted", self.inserted),
         ];
         parts.sort_by(|one, other| other.1.abs().total_cmp(&one.1.abs()));

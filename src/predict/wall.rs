@@ -2,7 +2,7 @@
 
 use super::descent::{first_root, quadratic_descent};
 use super::{DoubleDouble, Real, forecast, rounded};
-use crate::model::{Encounter, Forecast, PolynomialFlight, Wall};
+use crate::model::{Encounter, Flight, Forecast, PolynomialFlight, Wall};
 use crate::particle::Vector;
 
 /// Steps before a curved wall's question is put off.
@@ -110,15 +110,16 @@ fn settle_plane<const D: usize, F: PolynomialFlight<D>, W: Wall<D>>(
     }
 }
 
-/// Any wall, from its distance alone.
+/// Any wall, from its distance alone, and any flight whose acceleration has a bound.
 ///
 /// Far from it a grain cannot touch before it has covered the gap. Near it the
 /// gap φ obeys φ″ ≥ −B, with B from the wall's curvature and the accelerations, and
 /// φ + φ′ s − B s²/2 lies below it. The longer of the two steps is taken; neither
 /// passes a contact, if the wall's distances are right to [`ROUNDING`]: φ counts
 /// as less by as much. Contact is where it is twice that or less, and closing.
-pub(super) fn general<const D: usize, F: PolynomialFlight<D>, W: Wall<D>>(
+pub(super) fn general<const D: usize, F: Flight<D>, W: Wall<D>>(
     encounter: &Encounter<'_, D, F, W>,
+    acceleration: f64,
     curvature: f64,
     wall_speed: f64,
     wall_acceleration: f64,
@@ -131,7 +132,6 @@ pub(super) fn general<const D: usize, F: PolynomialFlight<D>, W: Wall<D>>(
         horizon,
         ..
     } = *encounter;
-    let acceleration = flight.acceleration().norm_squared().sqrt();
     let mut t = 0.0;
     for count in 0..MOST_STEPS {
         let (position, velocity, now) = (flight.position(t), flight.velocity(t), since + t);

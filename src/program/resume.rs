@@ -123,12 +123,16 @@ fn attempt<const D: usize>(
 ) -> Result<Attempt, ProgramError> {
     let scenario = &job.scenario;
     let beforehand = || prepare(job, skipped, name);
-    match scenario.gravity {
-        Gravity::None => {
+    match (&scenario.gravity, &scenario.rotation) {
+        (Gravity::None, _) => {
             let model = |boundary| scenario.floating_model::<D>(boundary);
             go_on(job, state, model, signals, beforehand)
         }
-        Gravity::Down(_) | Gravity::Along(_) => {
+        (_, Some(rotation)) => {
+            let model = |boundary| scenario.turning_model::<D>(rotation, boundary);
+            go_on(job, state, model, signals, beforehand)
+        }
+        (_, None) => {
             let model = |boundary| scenario.gravity_model::<D>(boundary);
             go_on(job, state, model, signals, beforehand)
         }

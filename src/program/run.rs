@@ -93,12 +93,16 @@ impl Run<'_> {
 pub(super) fn start<const D: usize>(job: &Job, signals: &Signals) -> Result<u8, ProgramError> {
     let start = Start::<D>::new(&job.origin, &job.scenario)?;
     let scenario: &Scenario = &job.scenario;
-    match scenario.gravity {
-        Gravity::None => {
+    match (&scenario.gravity, &scenario.rotation) {
+        (Gravity::None, _) => {
             let model = |boundary| scenario.floating_model(boundary);
             drive::drive(job, start, model, signals)
         }
-        Gravity::Down(_) | Gravity::Along(_) => {
+        (_, Some(rotation)) => {
+            let model = |boundary| scenario.turning_model(rotation, boundary);
+            drive::drive(job, start, model, signals)
+        }
+        (_, None) => {
             let model = |boundary| scenario.gravity_model(boundary);
             drive::drive(job, start, model, signals)
         }

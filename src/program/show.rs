@@ -77,6 +77,7 @@ pub(super) fn check(arguments: &CheckArguments) -> Result<u8, ProgramError> {
             Ok(SourceKind::Base(_)) => parts.push("a base to make".to_owned()),
             Ok(SourceKind::Rain(rain)) => parts.push(format!("{} to rain", rain.count)),
             Ok(SourceKind::Gas(gas)) => parts.push(format!("{} of a gas to make", gas.count)),
+            Ok(SourceKind::Drum(_)) => parts.push("a drum to fill".to_owned()),
             Ok(SourceKind::OneByOne(drops)) => {
                 parts.push(format!("{} to drop one by one", drops.count));
             }
@@ -101,11 +102,15 @@ pub(super) fn check_grains<const D: usize>(
     let start = Start::<D>::given(origin, scenario)?;
     let (grains, boundary): (_, Cuboid<D>) = (start.grains.clone(), start.boundary.clone());
     let settings = scenario.settings();
-    let tried = match scenario.gravity {
-        Gravity::None => {
+    let tried = match (&scenario.gravity, &scenario.rotation) {
+        (Gravity::None, _) => {
             Simulation::with_settings(scenario.floating_model(boundary), grains, settings).map(drop)
         }
-        _ => {
+        (_, Some(rotation)) => {
+            let model = scenario.turning_model(rotation, boundary);
+            Simulation::with_settings(model, grains, settings).map(drop)
+        }
+        (_, None) => {
             Simulation::with_settings(scenario.gravity_model(boundary), grains, settings).map(drop)
         }
     };

@@ -3,7 +3,7 @@
 mod crowd;
 mod model;
 
-pub use model::{FloatingModel, GravityModel};
+pub use model::{Drumming, FloatingModel, GravityModel, TurningModel};
 
 use std::fs::File;
 use std::io::BufReader;
@@ -153,6 +153,7 @@ impl<const D: usize> Start<D> {
                 rain_of.origin[D - 1] = rain.bottom.unwrap_or_else(|| self.ground(scenario));
                 rain_of.grains(&mut random)
             }
+            SourceKind::Drum(drum) => setup::Drum::from(*drum).grains(&mut random),
             SourceKind::Gas(gas) => {
                 let aspect = |axis, _| gas.aspect.get(axis).copied().unwrap_or(1.0);
                 let gas_of = setup::Gas {

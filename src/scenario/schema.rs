@@ -3,14 +3,16 @@
 mod conditions;
 mod gravity;
 mod parameters;
+mod rotation;
 mod sleep;
 mod sources;
 
 pub use conditions::{Output, Stop};
 pub use gravity::Gravity;
 pub use parameters::{Guards, Parameters, Threshold};
+pub use rotation::{Rotation, Turns};
 pub use sleep::{Phase, SelfCheck, Sleep};
-pub use sources::{Base, Gas, OneByOne, Rain, Source, SourceKind};
+pub use sources::{Base, Drum, Gas, OneByOne, Rain, Source, SourceKind};
 
 use std::borrow::Cow;
 
@@ -38,6 +40,10 @@ pub struct Scenario {
     /// `"none"`, a size (pointing down the last axis), or a vector; in g.
     #[serde(default)]
     pub gravity: Gravity,
+    /// A drum turns: gravity, as seen from it, or the ground with all that is
+    /// fixed or asleep. Left out: nothing turns.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub rotation: Option<Rotation>,
     /// What bounds each axis, in the order x, y(, z). Left out: open on all
     /// sides; a `gas` brings its own periodic box.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
@@ -192,6 +198,6 @@ impl Scenario {
             .get_or_insert(0.1 * self.parameters.elastic_speed);
         self.stop
             .all_frozen
-            .get_or_insert(!matches!(self.gravity, Gravity::None));
+            .get_or_insert(!matches!(self.gravity, Gravity::None) && self.rotation.is_none());
     }
 }

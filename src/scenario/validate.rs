@@ -5,7 +5,7 @@ mod sources;
 use crate::scenario::error::{Problem, Refusal};
 use crate::scenario::path::Path;
 use crate::scenario::read::Origin;
-use crate::scenario::schema::{Gravity, Scenario, Side};
+use crate::scenario::schema::{Gravity, Scenario, Side, Turns};
 
 /// No coordinate and no length is greater, in d.
 const FARTHEST: f64 = 1.0e9;
@@ -26,6 +26,7 @@ const COORDINATE: &str = "a number between -1e9 and 1e9 is allowed";
 pub(super) fn validate(origin: &Origin, scenario: &Scenario) -> Result<(), Refusal> {
     let checker = Checker { origin, scenario };
     checker.gravity()?;
+    checker.rotation()?;
     checker.boundaries()?;
     checker.parameters()?;
     checker.stop_and_output()?;
@@ -97,6 +98,48 @@ impl Checker<'_> {
                 self.require(size > 0.0 && size <= FARTHEST, path, found, allowed)
             }
         }
+    }
+
+    fn rotation(&self) -> Result<(), Refusal> {
+        let Some(rotation) = &self.scenario.rotation else {
+            return Ok(());
+        };
+        self.require(
+            !matches!(self.scenario.gravity, Gravity::None),
+            || key("rotation"),
+            "used without gravity",
+            "a drum turns under gravity",
+        )?;
+        let rate = rotation.angular_velocity;
+        self.require(
+            (1.0e-6..=1.0e3).contains(&rate.abs()),
+            || key("rotation.angular_velocity"),
+            rate,
+            "a number from 1e-6 to 1000, of either sign, is allowed",
+        )?;
+        if let Some(step) = rotation.step {
+            self.require(
+                rotation.of == Turns::Gravity,
+                || key("rotation.step"),
+                "given for ground that turns",
+                "only gravity can turn in steps",
+            )?;
+            self.require(
+                (1.0e-6..=1.0e6).contains(&step),
+                || key("rotation.step"),
+                step,
+                "a number from 1e-6 to 1e6 is allowed",
+            )?;
+        }
+        let Gravity::Along(vector) = &self.scenario.gravity else {
+            return Ok(());
+        };
+        let holds = |x: f64| x == 0.0 || (1.0e-9..=FARTHEST).contains(&x.abs());
+        let allowed = "where something turns, components of size 1e-9 … 1e9, or 0, are allowed";
+        for (axis, &x) in vector.iter().enumerate() {
+            self.require(holds(x), || key("gravity").index(axis), x, allowed)?;
+        }
+        Ok(())
     }
 
     fn boundaries(&self) -> Result<(), Refusal> {

@@ -2,19 +2,68 @@ use rand_chacha::ChaCha8Rng;
 
 use crate::boundary::{self, Cuboid};
 use crate::collide::Restitution;
-use crate::dynamics::{ForceFree, UniformGravity};
+use crate::dynamics::{ForceFree, Trochoid, TurningGravity, TurningGround, UniformGravity};
 use crate::engine::{self, Settings};
 use crate::error::SetupError;
-use crate::model::Parts;
+use crate::model::{Dynamics, Motion, Parts};
 use crate::particle::Vector;
 use crate::policy::{self, Never, SlowDescent};
-use crate::predict::Polynomial;
-use crate::scenario::schema::{Phase, Scenario, SelfCheck, Side};
+use crate::predict::{Polynomial, Turning};
+use crate::scenario::schema::{Phase, Rotation, Scenario, SelfCheck, Side, Turns};
 use crate::setup;
+use crate::time::Time;
 
 /// The model of a scenario without gravity.
 pub type FloatingModel<const D: usize> =
     Parts<ForceFree, Polynomial, Restitution, Never, Cuboid<D>>;
+/// The model of a scenario in which something turns.
+pub type TurningModel<const D: usize> =
+    Parts<Drumming<D>, Turning, Restitution, SlowDescent, Cuboid<D>>;
+
+/// Gravity that turns, or the ground.
+#[derive(Clone, Copy, Debug)]
+pub enum Drumming<const D: usize> {
+    /// Gravity, as seen from the drum.
+    Gravity(TurningGravity<D>),
+    /// The ground, as seen from outside.
+    Ground(TurningGround<D>),
+}
+
+impl<const D: usize> Dynamics<D> for Drumming<D> {
+    type Flight = Trochoid<D>;
+
+    const DRIVES: bool = true;
+
+    #[inline]
+    fn flight(&self, motion: &Motion<D>, since: Time) -> Trochoid<D> {
+        match self {
+            Drumming::Gravity(dynamics) => dynamics.flight(motion, since),
+            Drumming::Ground(dynamics) => dynamics.flight(motion, since),
+        }
+    }
+
+    fn gravity(&self, time: Time) -> Vector<D> {
+        match self {
+            Drumming::Gravity(dynamics) => dynamics.gravity(time),
+            Drumming::Ground(dynamics) => dynamics.gravity(time),
+        }
+    }
+
+    fn ground_velocity(&self, position: &Vector<D>, time: Time) -> Vector<D> {
+        match self {
+            Drumming::Gravity(dynamics) => dynamics.ground_velocity(position, time),
+            Drumming::Ground(dynamics) => dynamics.ground_velocity(position, time),
+        }
+    }
+
+    fn validate(&self) -> Result<(), SetupError> {
+        match self {
+            Drumming::Gravity(dynamics) => dynamics.validate(),
+            Drumming::Ground(dynamics) => dynamics.validate(),
+        }
+    }
+}
+
 /// The model of a scenario with gravity.
 pub type GravityModel<const D: usize> =
     Parts<UniformGravity<D>, Polynomial, Restitution, SlowDescent, Cuboid<D>>;
@@ -40,7 +89,7 @@ impl Scenario {
     #[must_use]
     pub fn deposit_area(&self) -> Option<f64> {
         let axes = self.axes();
-        if !self.gravity.is_down(axes) {
+        if !self.gravity.is_down(axes) || self.rotation.is_some() {
             return None;
         }
         (0..axes - 1).try_fold(1.0, |area, axis| Some(area * self.lateral(axis)?.1))
@@ -132,6 +181,37 @@ impl Scenario {
         Parts {
             dynamics: UniformGravity::new(Vector::from_fn(component)),
             predictor: Polynomial,
+            collision_rule: self.collision_rule(),
+            state_policy: self.policy(),
+            boundary,
+        }
+    }
+
+    /// The model with gravity or ground that turns.
+    #[must_use]
+    pub fn turning_model<const D: usize>(
+        &self,
+        rotation: &Rotation,
+        boundary: Cuboid<D>,
+    ) -> TurningModel<D> {
+        let gravity = Vector::from_fn(|axis, _| self.gravity.component(axis, D));
+        let (rate, plane) = (rotation.angular_velocity, [0, D - 1]);
+        let dynamics = match rotation.of {
+            // As the drum turns one way, gravity turns the other.
+            Turns::Gravity => {
+                let turning = TurningGravity::new(gravity, -rate, plane);
+                Drumming::Gravity(match rotation.step {
+                    Some(step) => turning.in_steps(step),
+                    None => turning,
+                })
+            }
+            Turns::Ground => {
+                Drumming::Ground(TurningGround::new(gravity, rate, plane, Vector::zeros()))
+            }
+        };
+        Parts {
+            dynamics,
+            predictor: Turning,
             collision_rule: self.collision_rule(),
             state_policy: self.policy(),
             boundary,

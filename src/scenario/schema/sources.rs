@@ -2,11 +2,11 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::particle::Mode;
-use crate::setup::Sizes;
+use crate::setup::{self, Sizes};
 
 /// Where grains come from: one written out here, a file, or a generator.
 ///
-/// Exactly one of `position`, `file`, `base`, `rain`, `gas` and `one_by_one`.
+/// Exactly one of `position`, `file`, `base`, `rain`, `gas`, `drum` and `one_by_one`.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 #[schemars(extend("oneOf" = [
@@ -15,6 +15,7 @@ use crate::setup::Sizes;
     { "required": ["base"] },
     { "required": ["rain"] },
     { "required": ["gas"] },
+    { "required": ["drum"] },
     { "required": ["one_by_one"] },
 ]))]
 pub struct Source {
@@ -48,6 +49,9 @@ pub struct Source {
     /// A disordered gas in a periodic box of its own.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub gas: Option<Gas>,
+    /// A drum of fixed grains and its sleeping filling.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub drum: Option<Drum>,
     /// Grains dropped during the run, each when everything is at rest.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub one_by_one: Option<OneByOne>,
@@ -132,6 +136,56 @@ fn default_temperature() -> f64 {
     1.0
 }
 
+/// A drum and its filling (the paper's section 4): a cylinder of fixed grains in
+/// regular rings round the origin, its axis horizontal, and equal grains that have
+/// fallen in and are asleep. In three dimensions the axis is y, which has to be
+/// periodic with the length `rings` times `ring_spacing`.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+pub struct Drum {
+    /// From the axis to the centres of the wall's grains, in d.
+    pub radius: f64,
+    /// How many rings of grains make the wall; 1 in two dimensions.
+    pub rings: usize,
+    /// Distance of the rings, in d.
+    pub ring_spacing: f64,
+    /// Distance of the grains along a ring, in d, at least.
+    pub arc_spacing: f64,
+    /// Up to which height above the axis it is filled, in d.
+    pub level: f64,
+}
+
+impl Default for Drum {
+    /// The paper's.
+    fn default() -> Self {
+        Drum::from(setup::Drum::default())
+    }
+}
+
+impl From<setup::Drum> for Drum {
+    fn from(drum: setup::Drum) -> Self {
+        Drum {
+            radius: drum.radius,
+            rings: drum.rings,
+            ring_spacing: drum.ring_spacing,
+            arc_spacing: drum.arc_spacing,
+            level: drum.level,
+        }
+    }
+}
+
+impl From<Drum> for setup::Drum {
+    fn from(drum: Drum) -> Self {
+        setup::Drum {
+            radius: drum.radius,
+            rings: drum.rings,
+            ring_spacing: drum.ring_spacing,
+            arc_spacing: drum.arc_spacing,
+            level: drum.level,
+        }
+    }
+}
+
 /// Grains dropped at random places during the run, each when everything is at
 /// rest (the end of the paper's section 3). The lateral axes have to be
 /// periodic or walled on both sides.
@@ -170,6 +224,8 @@ pub enum SourceKind<'a> {
     Rain(&'a Rain),
     /// A gas.
     Gas(&'a Gas),
+    /// A drum.
+    Drum(&'a Drum),
     /// Grains dropped during the run.
     OneByOne(&'a OneByOne),
 }
@@ -180,7 +236,7 @@ impl Source {
     ///
     /// # Errors
     ///
-    /// When none or several of the six are given.
+    /// When none or several of them are given.
     pub fn kind(&self) -> Result<SourceKind<'_>, Vec<&'static str>> {
         let given = [
             ("position", self.position.as_deref().map(SourceKind::Grain)),
@@ -188,6 +244,7 @@ impl Source {
             ("base", self.base.as_ref().map(SourceKind::Base)),
             ("rain", self.rain.as_ref().map(SourceKind::Rain)),
             ("gas", self.gas.as_ref().map(SourceKind::Gas)),
+            ("drum", self.drum.as_ref().map(SourceKind::Drum)),
             (
                 "one_by_one",
                 self.one_by_one.as_ref().map(SourceKind::OneByOne),
@@ -215,7 +272,7 @@ impl Source {
             Ok(SourceKind::Rain(rain)) => rain.count,
             Ok(SourceKind::Gas(gas)) => gas.count,
             Ok(SourceKind::OneByOne(drops)) => drops.count,
-            Ok(SourceKind::File(_) | SourceKind::Base(_)) | Err(_) => 0,
+            Ok(SourceKind::File(_) | SourceKind::Base(_) | SourceKind::Drum(_)) | Err(_) => 0,
         }
     }
 }

@@ -3,11 +3,11 @@
 use crate::error::SetupError;
 use crate::scenario::error::{Problem, Refusal};
 use crate::scenario::path::Path;
-use crate::scenario::schema::{Gravity, Source, SourceKind};
+use crate::scenario::schema::{Dimension, Drum, Gravity, Side, Source, SourceKind};
 use crate::scenario::validate::{
     COORDINATE, Checker, FARTHEST, MOST_GRAINS, NOT_NEGATIVE, POSITIVE, key,
 };
-use crate::setup::Sizes;
+use crate::setup::{self, Sizes};
 
 /// Grains per volume of the base, in 1/d³ or 1/d², not less than there will be.
 const DENSEST: f64 = 1.5;
@@ -52,7 +52,8 @@ impl Checker<'_> {
             } else {
                 format!("a source of {} at once", names.join(" and "))
             };
-            let allowed = "exactly one of position, file, base, rain, gas, one_by_one is allowed";
+            let allowed =
+                "exactly one of position, file, base, rain, gas, drum, one_by_one is allowed";
             let problem = Problem::Value {
                 found,
                 allowed: allowed.to_owned(),
@@ -129,6 +130,7 @@ impl Checker<'_> {
                 )?;
                 self.sizes(&drops.sizes, &inside)
             }
+            SourceKind::Drum(drum) => self.drum(drum, &path.clone().key("drum")),
             SourceKind::Gas(gas) => {
                 let inside = path.clone().key("gas");
                 let alone = self.scenario.grains.len() == 1 && self.scenario.boundaries.is_empty();
@@ -161,6 +163,52 @@ impl Checker<'_> {
                 self.sizes(&gas.sizes, &inside)
             }
         }
+    }
+
+    fn drum(&self, drum: &Drum, inside: &Path) -> Result<(), Refusal> {
+        let drum_of = setup::Drum::from(*drum);
+        let made = match self.scenario.dimension {
+            Dimension::Two => drum_of.wall::<2>().map(drop),
+            Dimension::Three => drum_of.wall::<3>().map(drop),
+        };
+        match made {
+            Ok(()) => {}
+            Err(SetupError::Parameter {
+                field,
+                value,
+                allowed,
+            }) => return self.require(false, || inside.clone().key(field), value, allowed),
+            Err(error) => return Err(self.origin.refuse(inside.clone(), error)),
+        }
+        let holds = drum.level.abs() <= drum.radius;
+        let allowed = "between the lowest and the highest point of the drum is allowed";
+        self.require(holds, || inside.clone().key("level"), drum.level, allowed)?;
+        self.require(
+            self.scenario.gravity == Gravity::Down(1.0),
+            || inside.clone(),
+            "used with another gravity than 1",
+            "it is filled under unit gravity down the last axis",
+        )?;
+        let volume = 4.0 * drum.radius * drum.radius * drum_of.length();
+        self.require(
+            volume <= MOST_GRAINS as f64,
+            || inside.clone(),
+            format!("a drum of {volume:.0} d³"),
+            "at most 10000000 grains are allowed",
+        )?;
+        if self.scenario.axes() == 2 {
+            return Ok(());
+        }
+        let length = drum_of.length();
+        let fits = match self.scenario.side(1) {
+            Side::Periodic {
+                origin,
+                length: period,
+            } => origin == 0.0 && (period - length).abs() <= 1.0e-9,
+            Side::Open | Side::Walls { .. } => false,
+        };
+        let allowed = format!("for it boundaries[1] has to be periodic with length {length}");
+        self.require(fits, || inside.clone(), "used without its period", &allowed)
     }
 
     fn grain(&self, source: &Source, position: &[f64], path: &Path) -> Result<(), Refusal> {
