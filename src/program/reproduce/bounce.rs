@@ -19,8 +19,8 @@ use crate::time::Time;
 /// α_frozen, as the floor's restitution.
 const RESTITUTION: f64 = 0.4;
 /// V_c and V_sleep of the curves: large, to be seen.
-const ELASTIC_SPEED: f64 = 0.06;
-const SLEEP_SPEED: f64 = 0.12;
+const ELASTIC_SPEED: f64 = 0.2;
+const SLEEP_SPEED: f64 = 0.3;
 const UNTIL: f64 = 4.0;
 
 /// A ball that first meets the floor at t = 1, with speed 1.
@@ -103,7 +103,10 @@ pub(super) fn report(_: &Context<'_>) -> Result<Report, ProgramError> {
     let exact = 2.0 * RESTITUTION / (1.0 - RESTITUTION);
     let printed = 2.0 / (1.0 - RESTITUTION);
     let chart = Chart::new("Fig. 1: a ball bounces on a floor")
-        .with_axes(Axis::new("time", "√(d/g)"), Axis::new("height", "d"))
+        .with_axes(
+            Axis::new("time", "√(d/g)").with_range(0.8, UNTIL),
+            Axis::new("height", "d").with_range(-0.005, 0.1),
+        )
         .with(Series::line("full dynamics", full.iter().copied()))
         .with(Series::dashed(
             "elastic below V_c",

@@ -11,9 +11,16 @@ pub(super) struct Effort {
     /// V_t of the deposits.
     pub(super) thresholds: &'static [f64],
     pub(super) seeds: u64,
+    /// From when on the mean number of normal grains is taken.
+    pub(super) normal_from: f64,
+    /// What is allowed for the packing fraction beside errors, and for exponents:
+    /// small deposits are not the paper's.
+    pub(super) fraction_allowed: f64,
+    pub(super) exponent_allowed: f64,
     /// Grains dropped one by one.
     pub(super) drops: usize,
-    /// Grains and end of the run without sleep, and end of those with it.
+    /// Grains of a deposit whose cost is followed, and until when without sleep and
+    /// with it.
     pub(super) growing: (usize, f64, f64),
     /// Grains of packings made by growth, and rates.
     pub(super) packed: (usize, &'static [f64]),
@@ -28,8 +35,11 @@ impl Effort {
             elastic_speed: 1.0e-3,
             thresholds: &[0.1, 0.05, 0.025],
             seeds: seeds.unwrap_or(2),
+            normal_from: 6.0,
+            fraction_allowed: 0.03,
+            exponent_allowed: 0.4,
             drops: 150,
-            growing: (200, 12.0, 15.0),
+            growing: (300, 12.0, 12.0),
             packed: (300, &[0.05, 0.02]),
         }
     }
@@ -42,6 +52,9 @@ impl Effort {
             elastic_speed: 1.0e-4,
             thresholds: &[0.1, 0.075, 0.05, 0.035, 0.02, 0.01],
             seeds: seeds.unwrap_or(5),
+            normal_from: 20.0,
+            fraction_allowed: 0.0,
+            exponent_allowed: 0.1,
             drops: 1200,
             growing: (1500, 30.0, 60.0),
             packed: (1000, &[0.1, 0.03, 0.01, 0.003]),

@@ -30,7 +30,7 @@ struct Whole<'a> {
 pub(super) fn text(part: &Part) -> String {
     let mut text = format!("## {}\n\n", part.title);
     if !part.rows.is_empty() {
-        let headings = ["quantity", "paper", "found", "seeds", "verdict"];
+        let headings = ["quantity", "paper", "found", "runs", "verdict"];
         let mut rows = vec![headings.map(str::to_owned).to_vec()];
         for row in &part.rows {
             rows.push(vec![

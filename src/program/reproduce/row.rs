@@ -42,7 +42,7 @@ pub(super) struct Row {
     pub(super) found: f64,
     /// Standard error; null if it is not known.
     pub(super) error: Option<f64>,
-    /// How many independent runs it is of.
+    /// How many runs it is of.
     pub(super) seeds: u64,
     /// Greatest deviation that counts as agreement.
     pub(super) tolerance: Option<f64>,
@@ -89,24 +89,48 @@ impl Row {
         self
     }
 
+    /// The same beside a bound: it agrees if it is that high, or within twice its
+    /// error of it.
+    pub(super) fn at_least(mut self, value: f64) -> Self {
+        let tolerance = 2.0 * self.error.unwrap_or(0.0);
+        self.paper = Some(Paper { value, error: 0.0 });
+        self.tolerance = Some(tolerance);
+        self.verdict = if self.found + tolerance >= value {
+            Verdict::Agrees
+        } else {
+            Verdict::Differs
+        };
+        self
+    }
+
     /// The value with its error, to be read.
     pub(super) fn found(&self) -> String {
         let estimate = Estimate {
             mean: self.found,
             error: self.error.unwrap_or(f64::NAN),
         };
-        estimate
-            .with_error()
-            .unwrap_or_else(|| significant(self.found))
+        estimate.with_error().unwrap_or_else(|| plain(self.found))
     }
 
     /// The paper's value, to be read.
     pub(super) fn paper(&self) -> String {
         match self.paper {
             None => "–".to_owned(),
-            Some(Paper { value, error }) if error > 0.0 => format!("{value} ± {error}"),
-            Some(Paper { value, .. }) => value.to_string(),
+            Some(Paper { value, error }) if error > 0.0 => format!("{} ± {error}", plain(value)),
+            Some(Paper { value, .. }) => plain(value),
         }
+    }
+}
+
+/// Six digits, without zeros that say nothing.
+fn plain(value: f64) -> String {
+    if !value.is_finite() {
+        return "unknown".to_owned();
+    }
+    let text = significant(value);
+    match text.contains('.') {
+        true => text.trim_end_matches('0').trim_end_matches('.').to_owned(),
+        false => text,
     }
 }
 
@@ -126,5 +150,13 @@ mod tests {
         assert_eq!(row(1.111, 0.04), Verdict::Differs);
         assert_eq!(row(1.08, f64::NAN), Verdict::Differs);
         assert_eq!(row(f64::NAN, 0.04), Verdict::Differs);
+    }
+
+    #[test]
+    fn numbers_are_as_short_as_they_can_be() {
+        assert_eq!(plain(0.640 - 0.11 * 0.05), "0.6345");
+        assert_eq!(plain(444.0), "444");
+        assert_eq!(plain(1_000.0), "1000");
+        assert_eq!(plain(f64::NAN), "unknown");
     }
 }
