@@ -7,6 +7,7 @@ use crate::program::error::ProgramError;
 use crate::program::estimate::Estimate;
 use crate::program::load::open;
 use crate::program::processor::ProcessorClock;
+use crate::program::reproduce::effort::Effort;
 use crate::program::reproduce::row::Row;
 use crate::program::reproduce::{Context, Report, assigned, csv_of};
 use crate::scenario::{Start, read_text};
@@ -21,10 +22,11 @@ const LONGEST: f64 = 600.0;
 type Look = [f64; 3];
 
 /// A deposit with V_sleep = V_wakeup = `threshold`, looked at while it grows.
-fn curve(threshold: f64, grains: usize, until: f64) -> Result<Vec<Look>, ProgramError> {
+fn curve(effort: &Effort, threshold: f64, until: f64) -> Result<Vec<Look>, ProgramError> {
     let (_, mut origin) = open("deposition")?;
     origin.assignments = assigned(&[
-        format!("grains.1.rain.count={grains}"),
+        format!("grains.1.rain.count={}", effort.growing.0),
+        format!("parameters.elastic_speed={:?}", effort.elastic_speed),
         format!("parameters.sleep_speed={threshold:?}"),
         format!("parameters.wake_speed={threshold:?}"),
     ])?;
@@ -73,14 +75,14 @@ fn exponent(looks: &[Look], from: f64) -> Estimate {
 }
 
 pub(super) fn report(context: &Context<'_>) -> Result<Report, ProgramError> {
-    let (grains, without, with) = context.effort.growing;
+    let (_, without, with) = context.effort.growing;
     let mut chart = Chart::new("Fig. 5: processor time of a growing deposit").with_axes(
         Axis::new("time", "√(d/g)").logarithmic(),
         Axis::new("processor time", "s").logarithmic(),
     );
     let (mut rows, mut table) = (Vec::new(), Vec::new());
     for (threshold, until) in [(0.0, without), (0.05, with), (0.1, with)] {
-        let looks = curve(threshold, grains, until)?;
+        let looks = curve(&context.effort, threshold, until)?;
         for [time, seconds, events] in &looks {
             table.push(
                 [threshold, *time, *seconds, *events]
@@ -93,14 +95,7 @@ pub(super) fn report(context: &Context<'_>) -> Result<Report, ProgramError> {
         let row = Row::shown(
             "Fig. 5",
             format!("exponent of the events per time against time, V_t = {threshold}"),
-            exponent(
-                &looks,
-                if threshold > 0.0 {
-                    0.35 * with
-                } else {
-                    0.35 * without
-                },
-            ),
+            exponent(&looks, 0.5 * until),
             1,
             if threshold > 0.0 {
                 "With sleep only the flowing layer costs: so much per unit of time, whatever has \
