@@ -3,11 +3,11 @@
 use crate::analysis::line_fit;
 use crate::engine::{Limits, Simulation, StopReason};
 use crate::plot::{Axis, Chart, Series};
+use crate::policy::Criterion;
 use crate::program::error::ProgramError;
 use crate::program::estimate::Estimate;
 use crate::program::load::open;
 use crate::program::processor::ProcessorClock;
-use crate::program::reproduce::effort::Effort;
 use crate::program::reproduce::row::Row;
 use crate::program::reproduce::{Context, Report, assigned, csv_of};
 use crate::scenario::{Start, read_text};
@@ -22,17 +22,21 @@ const LONGEST: f64 = 600.0;
 type Look = [f64; 3];
 
 /// A deposit with V_sleep = V_wakeup = `threshold`, looked at while it grows.
-fn curve(effort: &Effort, threshold: f64, until: f64) -> Result<Vec<Look>, ProgramError> {
-    let (_, mut origin) = open("deposition")?;
+fn curve(context: &Context<'_>, threshold: f64, until: f64) -> Result<Vec<Look>, ProgramError> {
+    let (_, mut origin) = open("deposition", context.program)?;
     origin.assignments = assigned(&[
-        format!("grains.1.rain.count={}", effort.growing.0),
-        format!("parameters.elastic_speed={:?}", effort.elastic_speed),
+        format!("grains.1.rain.count={}", context.effort.growing.0),
+        format!(
+            "parameters.elastic_speed={:?}",
+            context.effort.elastic_speed
+        ),
         format!("parameters.sleep_speed={threshold:?}"),
         format!("parameters.wake_speed={threshold:?}"),
     ])?;
     let scenario = read_text(&origin)?;
     let start = Start::<3>::new(&origin, &scenario)?;
-    let model = scenario.gravity_model(start.boundary.clone());
+    let policy = Criterion::SlowDescent(scenario.slow_descent());
+    let model = scenario.gravity_model(policy, start.boundary.clone());
     let mut simulation = Simulation::with_settings(model, start.grains, scenario.settings())?;
     let clock = ProcessorClock::start();
     let mut looks = Vec::new();
@@ -82,7 +86,7 @@ pub(super) fn report(context: &Context<'_>) -> Result<Report, ProgramError> {
     );
     let (mut rows, mut table) = (Vec::new(), Vec::new());
     for (threshold, until) in [(0.0, without), (0.05, with), (0.1, with)] {
-        let looks = curve(&context.effort, threshold, until)?;
+        let looks = curve(context, threshold, until)?;
         for [time, seconds, events] in &looks {
             table.push(
                 [threshold, *time, *seconds, *events]
