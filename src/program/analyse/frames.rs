@@ -92,14 +92,15 @@ pub(super) fn paths(run: &Path, out: Option<&PathBuf>) -> Result<(PathBuf, PathB
     Ok((run.to_path_buf(), out))
 }
 
-/// Reads the frames between two times, and the number of all.
+/// Reads the frames between two times; says how many there are in all, and the
+/// latest time.
 pub(super) fn read(
     file: &Path,
     (from, to): (f64, f64),
-) -> Result<(Vec<Frame>, usize), ProgramError> {
+) -> Result<(Vec<Frame>, usize, Time), ProgramError> {
     let name = file.display().to_string();
     let opened = File::open(file).map_err(ProgramError::io(name.clone()))?;
-    let (mut kept, mut count) = (Vec::new(), 0);
+    let (mut kept, mut count, mut end) = (Vec::new(), 0, Time::ZERO);
     for frame in XyzReader::new(BufReader::new(opened)) {
         let frame = frame.map_err(|source| match source {
             XyzError::Io(source) => ProgramError::Io {
@@ -112,9 +113,10 @@ pub(super) fn read(
             },
         })?;
         count += 1;
+        end = end.max(frame.time);
         if (from..=to).contains(&frame.time.units()) {
             kept.push(frame);
         }
     }
-    Ok((kept, count))
+    Ok((kept, count, end))
 }
