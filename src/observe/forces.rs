@@ -7,8 +7,11 @@ use crate::time::Time;
 ///
 /// Grains that are asleep or fixed transmit nothing to each other. So the force on
 /// a base is that of the grains which bounce on the base itself; the weight of
-/// those asleep on it is not part of it. What is taken up where grains fall
-/// asleep, and given back where they wake, is told apart.
+/// those asleep on it is not part of it. What the ground takes up without a
+/// contact, where grains fall asleep, wake, or are slowed by a guard, is told
+/// apart. Together with that the momentum of all grains is accounted for, but
+/// for what the default guard gives to the second grain of a pair that collides
+/// among static ones: in a small heap at V_c = 10⁻³ that was 1 % of the whole.
 ///
 /// ```
 /// use grainfall::boundary::{Cuboid, Side};
@@ -85,8 +88,10 @@ impl<const D: usize> ForceMeter<D> {
         self.mean(Some(&sum), now)
     }
 
-    /// The mean force from momentum that grains lost when they fell asleep, less
-    /// what they were given back when a check woke them, up to `now`, in mg.
+    /// The mean force on the ground without contacts, up to `now`, in mg: from the
+    /// momentum that grains lost when they fell asleep, less what they were given
+    /// back when they woke, and from guards that changed a grain which took no
+    /// part in the collision.
     #[must_use]
     pub fn by_sleep(&self, now: Time) -> Vector<D> {
         self.mean(Some(&self.ground), now)
@@ -106,12 +111,20 @@ fn add<const D: usize>(list: &mut Vec<Vector<D>>, place: usize, momentum: Vector
 }
 
 impl<const D: usize> Observer<D> for ForceMeter<D> {
-    fn observe<S: Surroundings<D>>(&mut self, occurrence: &Occurrence<D>, _: &S) {
+    fn observe<S: Surroundings<D>>(&mut self, occurrence: &Occurrence<D>, after: &S) {
         let given = -occurrence.impulse;
         match (occurrence.kind, occurrence.other, occurrence.wall) {
             (OccurrenceKind::Frozen, Some(other), _) => add(&mut self.grains, other.index(), given),
             (OccurrenceKind::Wall, _, Some(wall)) => add(&mut self.walls, wall.index(), given),
-            (OccurrenceKind::Sleep | OccurrenceKind::CheckWake, _, _) => self.ground += given,
+            (OccurrenceKind::Wake, Some(other), _) => {
+                // It was at rest, and has more now than it was struck with.
+                let start = after.ground_velocity(other);
+                let gained = (occurrence.other_velocity - start) * after.particle(other).mass;
+                self.ground -= gained - given;
+            }
+            (OccurrenceKind::Sleep | OccurrenceKind::CheckWake | OccurrenceKind::Guard, _, _) => {
+                self.ground += given;
+            }
             _ => {}
         }
     }

@@ -272,3 +272,74 @@ fn stress_and_force_are_those_of_the_run_itself() {
         "{error}"
     );
 }
+
+#[test]
+fn velocities_are_relative_to_ground_that_turns() {
+    let folder = tempfile::tempdir().unwrap();
+    let scenario = "\
+dimension = 2
+gravity = 1.0
+boundaries = [\"open\", \"open\"]
+rotation = { angular_velocity = 0.1, of = \"ground\" }
+stop = { time = 0.5 }
+
+[[grains]]
+position = [-0.5, -3.0]
+mode = \"fixed\"
+
+[[grains]]
+position = [0.5, -3.0]
+mode = \"fixed\"
+
+[[grains]]
+position = [0.0, -2.1339]
+mode = \"frozen\"
+
+[[grains]]
+position = [4.0, 3.0]
+velocity = [-0.3, 0.4]
+";
+    fs::write(folder.path().join("carried.toml"), scenario).unwrap();
+    let ran = Command::new(env!("CARGO_BIN_EXE_grainfall"))
+        .current_dir(folder.path())
+        .args(["run", "carried.toml", "--out", "carried", "--quiet"])
+        .status();
+    assert!(ran.unwrap().success());
+    let found = |component: &str| {
+        let only = [
+            "carried",
+            "velocity",
+            "--bins",
+            "1",
+            "--slab",
+            "y=-2.5,-1.5",
+            "--to",
+            "0",
+        ];
+        let mut arguments = only.to_vec();
+        arguments.extend(["--component", component]);
+        printed(&analyse(folder.path(), &arguments));
+        column(
+            &folder.path().join("carried/analysis/velocity.csv"),
+            &format!("velocity_{component}"),
+        )
+    };
+    // The frozen one is carried along at Ω r, as the ground is; so it rests.
+    let text = fs::read_to_string(folder.path().join("carried/frames.xyz")).unwrap();
+    assert!(
+        text.lines()
+            .nth(4)
+            .unwrap()
+            .starts_with("2 0.0 -2.1339 0.0 0.2133"),
+        "{text}"
+    );
+    for component in ["x", "y"] {
+        assert!(found(component).iter().all(|speed| speed.abs() < 1.0e-15));
+    }
+    // The one that flies has the velocity of ground at (4, 3).
+    let said = printed(&analyse(
+        folder.path(),
+        &["carried", "velocity", "--to", "0", "--bins", "1"],
+    ));
+    assert!(said.contains("greatest 0.0000"), "{said}");
+}

@@ -5,9 +5,11 @@ use std::io::BufReader;
 use std::path::{Path, PathBuf};
 
 use crate::analysis::{Container, highest_surface, lowest_surface};
+use crate::dynamics::TurningGround;
 use crate::output::{Frame, XyzError, XyzReader};
 use crate::particle::{Mode, Particle, Vector};
 use crate::program::error::ProgramError;
+use crate::scenario::{Turns, read as read_scenario};
 use crate::time::Time;
 
 /// All grains at an instant, and the box.
@@ -62,6 +64,20 @@ pub(super) fn extent<const D: usize>(samples: &[Sample<D>], axis: usize) -> Opti
         .iter()
         .filter_map(of_one)
         .reduce(|one, other| (one.0.min(other.0), one.1.max(other.1)))
+}
+
+/// The ground of the run that a folder holds, if it turns.
+pub(super) fn turning_ground<const D: usize>(
+    run: &Path,
+) -> Result<Option<TurningGround<D>>, ProgramError> {
+    let file = run.join("scenario.toml");
+    if !file.is_file() {
+        return Ok(None);
+    }
+    let (_, scenario) = read_scenario(&file, Vec::new())?;
+    let turns = scenario.rotation.filter(|turns| turns.of == Turns::Ground);
+    let nothing = Vector::zeros();
+    Ok(turns.map(|turns| TurningGround::new(nothing, turns.angular_velocity, [0, D - 1], nothing)))
 }
 
 /// The file of frames of a run, and where what is made of them goes.
