@@ -14,6 +14,7 @@ mod load;
 mod means;
 mod processor;
 mod progress;
+mod reproduce;
 mod resume;
 mod run;
 mod show;
@@ -45,6 +46,7 @@ pub fn main() -> ExitCode {
         Command::Schema => show::schema(),
         Command::Draw(arguments) => draw::draw(&arguments),
         Command::Analyse(arguments) => analyse::analyse(&arguments),
+        Command::Reproduce(arguments) => reproduce::reproduce(&arguments),
         Command::Validate(arguments) => validate::validate(&arguments),
         Command::Bench(arguments) => bench::bench(&arguments),
     };

@@ -47,11 +47,13 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
             self.tell_neighbours(particle);
         } else {
             // The grain just left comes first: it is often the next, and a
-            // near contact spares work on all others.
+            // near contact spares work on all others. Where the two see each other
+            // move uniformly they part for ever, and a glance will do.
             let mut left = None;
-            if let Partner::Particle(last) = self.traces[particle as usize].partner {
-                let mut list = self.world.near.list(particle).iter();
-                left = list.find(|other| other.particle == last).copied();
+            if let Partner::Particle(last) = self.traces[particle as usize].partner
+                && !self.world.see_each_other(particle, last)
+            {
+                left = self.world.near.listed(particle, last);
             }
             if let Some(other) = &left {
                 self.meet(particle, other);
@@ -64,7 +66,9 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
     }
 
     pub(super) fn enqueue(&mut self, particle: u32) {
-        let key = self.slots[particle as usize].key(particle);
+        let slot = &self.slots[particle as usize];
+        let key = slot.key(particle);
+        self.world.glances.set_bound(particle, slot.bound());
         self.queue.set(particle, key);
         self.vigil.touch(particle);
     }
@@ -73,7 +77,7 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
     fn tell_neighbours(&mut self, particle: u32) {
         let mut found = std::mem::take(&mut self.scratch);
         found.clear();
-        found.extend_from_slice(self.world.near.list(particle));
+        found.extend(self.world.near.list(particle));
         for other in &found {
             if self.world.bodies[other.particle as usize].mode.is_mobile()
                 && self.meet(other.particle, &other.seen_from(particle))

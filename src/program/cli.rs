@@ -6,6 +6,7 @@ use clap::{Args, Parser, Subcommand};
 
 use crate::program::analyse::AnalyseArguments;
 use crate::program::bench::BenchArguments;
+use crate::program::reproduce::ReproduceArguments;
 use crate::program::sweep::{MOST_RUNS, Variation};
 use crate::scenario::Assignment;
 
@@ -20,6 +21,7 @@ Examples:
                                                 many runs, on all cores
   grainfall draw runs/deposition-1 --time 50
   grainfall analyse runs/deposition-1           packing, contacts, motion: CSV and SVG
+  grainfall reproduce all --quick               the paper's figures, from small systems
   grainfall validate --quick                    known physics, in a minute
   grainfall bench gas                           what a collision costs
 
@@ -163,6 +165,8 @@ pub(super) enum Command {
     Draw(DrawArguments),
     /// Measure packing, contacts and motion on the frames of a run
     Analyse(AnalyseArguments),
+    /// Make the figures and numbers of the paper again
+    Reproduce(ReproduceArguments),
     /// Measure known physics and say whether it comes out right
     Validate(ValidateArguments),
     /// Measure what events cost, in time and memory

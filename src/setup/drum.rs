@@ -170,7 +170,9 @@ impl Drum {
             region.lengths[1] = self.length();
             region.periodic[1] = true;
         }
-        let volume: f64 = region.lengths.iter().product();
+        // Where centres may be.
+        let room = |axis: usize| region.lengths[axis] - f64::from(u8::from(!region.periodic[axis]));
+        let volume: f64 = (0..D).map(room).product();
         let count = fraction * volume / crate::analysis::ball_volume::<D>(0.5);
         let places = insert(&region, &vec![1.0; count as usize], random)?;
         let inside = |place: &Vector<D>| {
