@@ -189,6 +189,12 @@ impl<const D: usize> Neighbours<D> {
         self.ties[particle as usize].leash > 0.0
     }
 
+    /// How far from its anchor a grain may go, in d.
+    #[inline]
+    pub(super) fn leash(&self, particle: u32) -> f64 {
+        ROUND * self.ties[particle as usize].leash
+    }
+
     /// How far a grain may still move from `position`, in d; negative if too
     /// far already.
     pub(super) fn slack(&self, particle: u32, position: &Vector<D>) -> f64 {
@@ -238,11 +244,11 @@ impl<const D: usize> Neighbours<D> {
             break;
         }
         let mut old = std::mem::take(&mut self.ties[particle as usize].list);
-        for link in old.iter().filter(|link| !list.contains(link)) {
+        for link in old.iter().filter(|link| !link.is_in(&list)) {
             let tie = &mut self.ties[link.particle() as usize];
             tie.forget(link.seen_from(particle));
         }
-        for link in list.iter().filter(|link| !old.contains(link)) {
+        for link in list.iter().filter(|link| !link.is_in(&old)) {
             let tie = &mut self.ties[link.particle() as usize];
             if tie.leash > 0.0 {
                 tie.list.push(link.seen_from(particle));
