@@ -28,7 +28,7 @@ const SHORT_LEASH: f64 = 0.2;
 /// Length of the longest, for grains with hardly a neighbour.
 const LONG_LEASH: f64 = 0.5;
 /// How many neighbours a list should hold on average.
-const WANTED: f64 = 9.0;
+const WANTED: f64 = 12.0;
 /// A grain whose long leash gives it more neighbours than this gets the short
 /// one.
 const MANY: usize = 16;
@@ -124,10 +124,9 @@ impl<const D: usize> Neighbours<D> {
     }
 
     /// Somebody on the list of a grain.
-    pub(super) fn listed(&self, particle: u32, other: u32) -> Option<Found<D>> {
+    pub(super) fn listed(&self, particle: u32, other: u32) -> Option<Link<D>> {
         let mut list = self.ties[particle as usize].list.iter();
-        let link = list.find(|link| link.particle() == other)?;
-        Some(self.cells.found(particle, *link))
+        list.find(|link| link.particle() == other).copied()
     }
 
     /// The same, as it is kept.

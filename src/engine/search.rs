@@ -13,7 +13,7 @@
 //! events, and the one with the smaller id comes first.
 
 use crate::engine::body::scale_at;
-use crate::engine::cells::Found;
+use crate::engine::cells::{Found, Link};
 use crate::engine::neighbours::Neighbours;
 use crate::engine::simulation::Simulation;
 use crate::engine::slot::{Partner, contact_key};
@@ -47,23 +47,45 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
         if self.world.bodies[particle as usize].mode.is_static() {
             self.tell_neighbours(particle);
         } else {
-            // The grain just left comes first: it is often the next, and a
-            // near contact spares work on all others. Where the two see each other
-            // move uniformly they part for ever, and a glance will do.
-            let mut left = None;
+            // The grain just left is often the next, and a near contact spares
+            // work on all others. Where the two see each other move uniformly they
+            // part for ever, and a glance will do.
+            let (mut asked, mut back) = (None, None);
             if let Partner::Particle(last) = self.traces[particle as usize].partner
                 && !self.world.see_each_other(particle, last)
+                && let Some(link) = self.world.near.listed(particle, last)
             {
-                left = self.world.near.listed(particle, last);
-            }
-            if let Some(other) = &left {
-                self.meet(particle, other);
+                let bound = self.not_back_before(particle, link);
+                if bound > 0.0 {
+                    back = Some((link, bound));
+                } else {
+                    let found = self.world.near.found(particle, link);
+                    self.meet(particle, &found);
+                    asked = Some(link);
+                }
             }
             self.meet_walls(particle);
-            self.meet_listed(particle, left);
+            self.meet_listed(particle, asked, back);
         }
         self.find_renewal(particle);
         self.enqueue(particle);
+    }
+
+    /// A time, from now, before which a grain certainly does not come back to the
+    /// one it has left, if that is at rest and it has done so just now.
+    #[inline]
+    fn not_back_before(&self, particle: u32, link: Link<D>) -> f64 {
+        let (own, other) = (
+            &self.world.bodies[particle as usize],
+            &self.world.bodies[link.particle() as usize],
+        );
+        if M::Dynamics::GROWS || !other.still || own.since != self.world.clock {
+            return 0.0;
+        }
+        let found = self.world.near.found(particle, link);
+        let place = other.position - own.position + shift(&self.model, found.turns, 1);
+        let flight = self.world.flight(&self.model, particle);
+        self.model.predictor().not_back_before(&flight, &place)
     }
 
     pub(super) fn enqueue(&mut self, particle: u32) {
