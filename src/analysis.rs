@@ -7,8 +7,9 @@
 //! cross-sections matter. Lengths are in d, speeds in √(gd). The last axis is
 //! "up".
 //!
-//! What needs the collisions between two snapshots, such as stress, is measured
-//! by the observers in [`observe`](crate::observe).
+//! Stress needs the collisions between two snapshots: [`StressMeter`] is an
+//! observer, to be shown a run. Others are in [`observe`](crate::observe), such as
+//! the one of forces on walls and bases.
 //!
 //! ```
 //! use grainfall::analysis::{Bins, Container, contacts, coordination, fraction_profile};
@@ -51,6 +52,7 @@ pub mod kinetic_theory;
 mod packing;
 mod pairs;
 mod radial;
+mod stress;
 mod surface;
 mod velocities;
 
@@ -72,5 +74,6 @@ pub use fractions::{fraction_map, fraction_profile};
 pub use packing::{SlabFraction, highest_surface, lowest_surface, packing_fraction, slab_fraction};
 pub use pairs::for_each_pair;
 pub use radial::{RadialDistribution, radial_distribution};
+pub use stress::{Stress, StressMeter};
 pub use surface::{surface_of_grains, surface_of_map};
 pub use velocities::{BinnedMotion, Probe, Profile, binned_motion};

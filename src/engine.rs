@@ -16,6 +16,7 @@ mod counts;
 mod energy;
 mod events;
 mod foresight;
+mod glances;
 mod guards;
 mod ledger;
 mod missed;

@@ -104,6 +104,8 @@ mod book {
     struct GettingStarted;
     #[doc = include_str!("../book/src/model.md")]
     struct TheModel;
+    #[doc = include_str!("../book/src/drum.md")]
+    struct Drum;
     #[doc = include_str!("../book/src/own-criterion.md")]
     struct OwnCriterion;
     #[doc = include_str!("../book/src/prediction.md")]

@@ -16,6 +16,7 @@ mod load;
 mod means;
 mod processor;
 mod progress;
+mod reproduce;
 mod resume;
 mod run;
 mod show;
@@ -56,6 +57,7 @@ fn run_command(program: &Program) -> ExitCode {
         Command::Schema => show::schema(),
         Command::Draw(arguments) => draw::draw(&arguments),
         Command::Analyse(arguments) => analyse::analyse(&arguments),
+        Command::Reproduce(arguments) => reproduce::reproduce(&arguments, program),
         Command::Validate(arguments) => validate::validate(&arguments),
         Command::Bench(arguments) => bench::bench(&arguments),
     };

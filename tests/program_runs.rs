@@ -880,3 +880,37 @@ fn growth_and_scaling_write_tables() {
     assert_eq!(column(1), ["grains", "108", "256"]);
     assert_eq!(column(6)[1], "1.000");
 }
+
+#[test]
+fn figures_that_need_no_runs_are_made_at_once() {
+    let place = tempfile::tempdir().unwrap();
+    expect(place.path(), 0, &["reproduce", "fig1", "fig2", "--quick"]);
+    let folder = place.path().join("reproduced-quick");
+    for name in [
+        "fig1.svg",
+        "fig1.csv",
+        "fig2.svg",
+        "fig2.csv",
+        "reproduce.md",
+    ] {
+        assert!(folder.join(name).is_file(), "{name}");
+    }
+    let text = std::fs::read_to_string(folder.join("reproduce.json")).unwrap();
+    let told: serde_json::Value = serde_json::from_str(&text).unwrap();
+    let rows: Vec<&serde_json::Value> = told["parts"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .flat_map(|part| part["rows"].as_array().unwrap())
+        .collect();
+    // The printed formula lacks a factor; the exact series comes out.
+    assert_eq!(rows[0]["verdict"], "differs");
+    assert_eq!(rows[1]["verdict"], "agrees");
+    assert!((rows[1]["found"].as_f64().unwrap() - 4.0 / 3.0).abs() < 1.0e-9);
+    // Both orders of falling asleep.
+    assert!(
+        rows[3..5]
+            .iter()
+            .all(|row| row["found"].as_f64().unwrap() > 10.0)
+    );
+}

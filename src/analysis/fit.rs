@@ -101,10 +101,7 @@ mod tests {
 
     #[test]
     fn points_on_a_line_give_it_back() {
-        let points: Vec<[f64; 2]> = (0..9)
-            .map(|i| f64::from(i))
-            .map(|x| [x, 2.0 - 0.5 * x])
-            .collect();
+        let points: Vec<[f64; 2]> = (0..9).map(f64::from).map(|x| [x, 2.0 - 0.5 * x]).collect();
         let fit = line_fit(&points, None).unwrap();
         assert!((fit.slope + 0.5).abs() < 1.0e-15 && (fit.intercept - 2.0).abs() < 1.0e-14);
         assert!(fit.slope_error < 1.0e-14 && fit.residual < 1.0e-28);

@@ -32,7 +32,9 @@ fn audit_lists<M: Model<D>, const D: usize>(simulation: &Simulation<M, D>) -> Re
     for one in 0..simulation.world.bodies.len() as u32 {
         for entry in near.list(one) {
             if near.is_tied(entry.particle)
-                && !near.list(entry.particle).contains(&entry.seen_from(one))
+                && !near
+                    .list(entry.particle)
+                    .any(|their| their == entry.seen_from(one))
             {
                 return Err(format!("{one} lists {entry:?}, which does not list it"));
             }

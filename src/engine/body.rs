@@ -4,6 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::engine::cells::Found;
 use crate::engine::counts::ModeCounts;
+use crate::engine::glances::Glances;
 use crate::engine::ledger::{Entry, Ledger};
 use crate::engine::neighbours::Neighbours;
 use crate::model::{Boundary, Dynamics, Flight, FlightOf, Model, Motion};
@@ -43,6 +44,7 @@ pub(super) struct World<const D: usize> {
     /// count as known: more than that of any whose last event is not
     /// [`LONG_AGO`].
     pub(super) blur: f64,
+    pub(super) glances: Glances<D>,
 }
 
 /// Positions of grains whose last event is longer ago than this, in √(d/g), may
@@ -54,7 +56,7 @@ const ROUND: f64 = 32.0 * f64::EPSILON;
 
 /// A bound on how far off a position is, computed `after` the start of a flight.
 #[inline]
-fn rounding<F: Flight<D>, const D: usize>(flight: &F, after: f64) -> f64 {
+pub(super) fn rounding<F: Flight<D>, const D: usize>(flight: &F, after: f64) -> f64 {
     ROUND * (flight.start().amax() + flight.speed_bound(after) * after)
 }
 
@@ -153,8 +155,6 @@ impl<const D: usize> World<D> {
             body.mode = mode;
         }
         body.still = mode.is_static() && flight_of(model, particle, body).is_at_rest();
-        self.keep_blur(model, particle);
-        let body = &mut self.bodies[particle as usize];
         for axis in 0..D {
             let Some(period) = model.boundary().period(axis) else {
                 continue;
@@ -172,6 +172,8 @@ impl<const D: usize> World<D> {
                 self.near.unwind(particle, axis, turns as i32);
             }
         }
+        self.keep_blur(model, particle);
+        self.glance(model, particle);
     }
 
     /// A grain that was found next to `one`, now, and the vector to it from

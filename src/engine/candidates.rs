@@ -3,50 +3,135 @@
 //! Bounds decide who is asked, never what is answered.
 
 use crate::engine::body::{LONG_AGO, World, flight_of, is_known, scale_at};
-use crate::engine::cells::Found;
+use crate::engine::cells::Link;
 use crate::engine::search::shift;
 use crate::engine::simulation::Simulation;
 use crate::model::{Crowd, Dynamics, Flight, LANES, Model, Nook, Predictor};
+use crate::time::Time;
 
 /// Somebody who may come first.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Candidate<const D: usize> {
     /// Not before this, from now.
     bound: f64,
-    found: Found<D>,
+    link: Link<D>,
 }
 
 impl<M: Model<D>, const D: usize> Simulation<M, D> {
     /// Notes the first contact with anybody on a grain's list, but for the one
     /// that has been asked, if it comes before what is known already: nearly all
     /// are told to come later by a bound, and the others are asked in the order
-    /// of their bounds.
-    pub(super) fn meet_listed(&mut self, particle: u32, asked: Option<Found<D>>) {
+    /// of their bounds. To somebody it does not come `back` before a time.
+    pub(super) fn meet_listed(
+        &mut self,
+        particle: u32,
+        mut asked: Option<Link<D>>,
+        mut back: Option<(Link<D>, f64)>,
+    ) {
+        if !self.world.is_current() && self.epoch_is_over() {
+            self.begin_epoch();
+        }
         let mut near = std::mem::take(&mut self.candidates);
-        self.find_candidates(particle, &mut near);
         let now = self.world.clock;
-        while !near.is_empty() {
-            let (mut bound, mut place) = (near[0].bound, 0);
-            for (other, candidate) in near.iter().enumerate().skip(1) {
-                if candidate.bound < bound {
-                    (bound, place) = (candidate.bound, other);
+        let known = self.slots[particle as usize].contact;
+        // It is likely to be back not much later than it can be, and bounds are
+        // the better the shorter they have to look ahead.
+        let mut until = back.map_or(known, |(_, bound)| known.min(now + 2.0 * bound));
+        loop {
+            self.find_candidates(particle, until, back, &mut near);
+            while !near.is_empty() {
+                let (mut bound, mut place) = (near[0].bound, 0);
+                for (other, candidate) in near.iter().enumerate().skip(1) {
+                    if candidate.bound < bound {
+                        (bound, place) = (candidate.bound, other);
+                    }
+                }
+                if bound > self.slots[particle as usize].contact - now {
+                    break;
+                }
+                let Candidate { link, .. } = near.swap_remove(place);
+                if asked != Some(link) {
+                    let found = self.world.near.found(particle, link);
+                    self.meet(particle, &found);
                 }
             }
-            if bound > self.slots[particle as usize].contact - now {
+            near.clear();
+            let contact = self.slots[particle as usize].contact;
+            if contact <= until {
                 break;
             }
-            let Candidate { found, .. } = near.swap_remove(place);
-            if asked != Some(found) {
-                self.meet(particle, &found);
+            // Nobody comes as soon as that.
+            if let Some((link, _)) = back.take() {
+                asked = Some(link);
             }
+            until = contact;
         }
-        near.clear();
         self.candidates = near;
+    }
+
+    /// Whether so much has happened in an epoch that looking at everybody anew is
+    /// a small matter beside it.
+    #[cold]
+    fn epoch_is_over(&self) -> bool {
+        let events = self.counts.total() - self.epoch_events;
+        events >= self.world.bodies.len() as u64 / 8
     }
 
     /// Everybody on a grain's list who may meet it before its known contact, and
     /// a time before which they certainly do not, counted from now.
-    fn find_candidates(&mut self, particle: u32, candidates: &mut Vec<Candidate<D>>) {
+    fn find_candidates(
+        &mut self,
+        particle: u32,
+        until: Time,
+        back: Option<(Link<D>, f64)>,
+        candidates: &mut Vec<Candidate<D>>,
+    ) {
+        self.world.near.make_bed(particle, &self.world.bodies);
+        let (bed, movers) = self.world.near.bed(particle);
+        let onlooker = self.world.onlooker(particle, until);
+        if (bed.is_some() || onlooker.is_none())
+            && !self.find_slowly(particle, until, back, candidates)
+        {
+            return;
+        }
+        let Some(onlooker) = onlooker else {
+            return;
+        };
+        let World { near, glances, .. } = &self.world;
+        for few in movers.chunks(LANES) {
+            let links: [Link<D>; LANES] =
+                std::array::from_fn(|lane| few[if lane < few.len() { lane } else { 0 }]);
+            let images = links.iter().fold(0, |any, link| any | link.image());
+            let shifts = (images != 0).then(|| links.map(|link| near.link_shift(link)));
+            let others = links.map(Link::particle);
+            let (bounds, mut soon) = glances.not_before(&onlooker, others, shifts);
+            soon &= (1 << few.len()) - 1;
+            if soon == 0 {
+                continue;
+            }
+            let bounds = bounds.to_array();
+            while soon != 0 {
+                let lane = soon.trailing_zeros() as usize;
+                soon &= soon - 1;
+                candidates.push(Candidate {
+                    bound: bounds[lane],
+                    link: links[lane],
+                });
+            }
+        }
+    }
+
+    /// The same for grains at rest, and if the grain itself is none that bounds
+    /// are told to by glances, for all others, too. False if nothing can be said
+    /// of it, so that everybody has been noted.
+    #[inline(never)]
+    fn find_slowly(
+        &self,
+        particle: u32,
+        until: Time,
+        back: Option<(Link<D>, f64)>,
+        candidates: &mut Vec<Candidate<D>>,
+    ) -> bool {
         let model = &self.model;
         let World {
             bodies,
@@ -54,7 +139,7 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
             clock,
             blur,
             ..
-        } = &mut self.world;
+        } = &self.world;
         let now = *clock;
         let blur = *blur;
         let scale = scale_at::<M, D>(model, now);
@@ -68,27 +153,32 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
         let own = flight_of(model, particle, body).advanced(flown);
         if !(0.0..=LONG_AGO).contains(&flown) && !is_known(model, particle, body, flown, blur) {
             // Where it is now is not known well enough to leave anybody out.
-            let all = near.list(particle).iter();
-            candidates.extend(all.map(|&found| Candidate { bound: 0.0, found }));
-            return;
+            let all = near.links(particle).iter();
+            candidates.extend(all.map(|&link| Candidate { bound: 0.0, link }));
+            return false;
         }
-        let horizon = self.slots[particle as usize].contact - now;
+        let horizon = until - now;
         let place = own.start() - near.anchor(particle);
-        let (bed, movers) = near.bed(particle, bodies);
+        let (bed, movers) = near.bed(particle);
         let slots = &self.slots;
-        let mut add = |answers: [f64; LANES], few: &[Found<D>]| {
-            for (bound, found) in answers.into_iter().zip(few) {
+        let mut add = |answers: [f64; LANES], few: &[Link<D>]| {
+            for (mut bound, link) in answers.into_iter().zip(few) {
+                if let Some((left, time)) = back
+                    && left == *link
+                {
+                    bound = time;
+                }
                 // NaN says nothing, so it is not later than anything.
                 if bound == f64::INFINITY || bound > horizon {
                     continue;
                 }
                 // Later than its own bound, the other finds it anyway.
-                if bound > slots[found.particle as usize].bound() - now {
+                if bound > slots[link.particle() as usize].bound() - now {
                     continue;
                 }
                 candidates.push(Candidate {
                     bound: if bound > 0.0 { bound } else { 0.0 },
-                    found: *found,
+                    link: *link,
                 });
             }
         };
@@ -106,9 +196,13 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
             };
             add(model.predictor().not_before_resting(&nook), few);
         }
+        if self.world.onlooker(particle, now).is_some() {
+            return true;
+        }
         for few in movers.chunks(LANES) {
-            let found: [Found<D>; LANES] =
+            let found: [Link<D>; LANES] =
                 std::array::from_fn(|lane| few[if lane < few.len() { lane } else { 0 }]);
+            let found = found.map(|link| near.found(particle, link));
             let theirs = found.map(|other| &bodies[other.particle as usize]);
             let after = theirs.map(|body| now.since(body.since));
             let shifted = found.iter().any(|other| other.turns != [0; D]);
@@ -132,5 +226,6 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
             }
             add(answers, few);
         }
+        true
     }
 }

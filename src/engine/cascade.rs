@@ -122,6 +122,8 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
             if body.since == self.world.clock {
                 body.velocity = velocity;
                 body.stamp = body.stamp.wrapping_add(1);
+                self.world.keep_blur(&self.model, member);
+                self.world.glance(&self.model, member);
             } else {
                 let position = self.world.particle_now(&self.model, member).position;
                 self.settle(member, position, velocity);
@@ -308,7 +310,7 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
         };
         let near = &self.world.near;
         if near.slack(particle, &one.position) > margin {
-            near.list(particle).iter().for_each(look);
+            near.list(particle).for_each(|found| look(&found));
         } else {
             near.for_each_within(particle, farthest, |found| look(&found));
         }

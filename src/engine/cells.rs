@@ -1,14 +1,19 @@
 //! The cell grid: which grains may be near which.
 //!
 //! A grain is filed under the cell of its *anchor*, the place its neighbour
-//! list was made for. Cell coordinates are not wrapped while a grain flies on
-//! through a periodic face, so that the image of a neighbour is known exactly:
-//! it is the one whose cell lies next to the grain's own. Outermost cells of
-//! axes that are not periodic reach to infinity.
+//! list was made for, in the image that lies in the grid; how many periods away
+//! from there it is stored is kept beside. So the image of a neighbour is known
+//! exactly: it is the one whose cell lies next to the grain's own. Outermost
+//! cells of axes that are not periodic reach to infinity.
 
 mod check;
+mod link;
+mod rooms;
 mod saved;
 
+use rooms::{Guest, Rooms};
+
+pub(super) use link::Link;
 pub(super) use saved::SavedCells;
 
 use crate::model::{Boundary, Period};
@@ -17,43 +22,55 @@ use crate::particle::Vector;
 /// Edges are longer than what they must cover by this factor, for rounding.
 const SLACK: f64 = 1.0 + 1.0e-9;
 
+/// So many cells along an axis are looked at without further ado.
+const MOST_STEPS: usize = 3;
+
 /// Cells of an axis.
 #[derive(Clone, Copy, Debug)]
 struct Axis {
     origin: f64,
     edge: f64,
+    /// Cells in a d.
+    per_edge: f64,
     count: i32,
     stride: usize,
     period: Option<Period>,
 }
 
-/// A grain's place in the grid.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Seat<const D: usize> {
-    /// The place it is filed under, in d.
-    pub(super) anchor: Vector<D>,
-    /// How far from there its surface may be, in d.
-    pub(super) reach: f64,
-    cell: [i32; D],
-    /// Whether that cell is an image of one of the grid.
-    astray: bool,
-}
+impl Axis {
+    fn new(origin: f64, edge: f64, count: i32, stride: usize, period: Option<Period>) -> Self {
+        Axis {
+            origin,
+            edge,
+            per_edge: 1.0 / edge,
+            count,
+            stride,
+            period,
+        }
+    }
 
-/// The grid and who is where.
-#[derive(Clone, Debug)]
-pub(super) struct Cells<const D: usize> {
-    axes: [Axis; D],
-    /// Who is in each cell of the grid.
-    rooms: Vec<Vec<u32>>,
-    seats: Vec<Seat<D>>,
-}
+    /// The period, in d; zero if there is none.
+    #[inline]
+    fn length(&self) -> f64 {
+        self.period.map_or(0.0, |period| period.length)
+    }
 
-/// A grain found next to another, with the number of periods to add to its
-/// position along each axis.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct Found<const D: usize> {
-    pub(super) particle: u32,
-    pub(super) turns: [i32; D],
+    /// Where a cell begins.
+    #[inline]
+    fn corner(&self, cell: i32) -> f64 {
+        self.origin + f64::from(cell) * self.edge
+    }
+
+    /// The cell of the grid that a cell is an image of, and how many periods
+    /// away it is.
+    #[inline]
+    fn wrapped(&self, cell: i32) -> (i32, i32) {
+        if (0..self.count).contains(&cell) {
+            (cell, 0)
+        } else {
+            (cell.rem_euclid(self.count), cell.div_euclid(self.count))
+        }
+    }
 }
 
 impl<const D: usize> Found<D> {
@@ -64,6 +81,40 @@ impl<const D: usize> Found<D> {
             turns: self.turns.map(|turns| -turns),
         }
     }
+}
+
+/// Where a grain is filed.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Spot<const D: usize> {
+    /// Its anchor, in the image that lies in the grid; in d.
+    pub(super) home: Vector<D>,
+    /// How far from there its surface may be, in d.
+    pub(super) reach: f64,
+}
+
+/// Under which cell a grain is filed.
+#[derive(Clone, Copy, Debug)]
+struct Seat<const D: usize> {
+    cell: [i32; D],
+    /// From the image in the grid to the one that is stored, in periods.
+    turns: [i32; D],
+}
+
+/// The grid and who is where.
+#[derive(Clone, Debug)]
+pub(super) struct Cells<const D: usize> {
+    axes: [Axis; D],
+    rooms: Rooms<D>,
+    spots: Vec<Spot<D>>,
+    seats: Vec<Seat<D>>,
+}
+
+/// A grain found next to another, with the number of periods to add to its
+/// position along each axis.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Found<const D: usize> {
+    pub(super) particle: u32,
+    pub(super) turns: [i32; D],
 }
 
 impl<const D: usize> Cells<D> {
@@ -83,24 +134,20 @@ impl<const D: usize> Cells<D> {
             let count = cells_of(edge, axis) as i32;
             let period = boundary.period(axis);
             let fitting = span[axis] / f64::from(count);
-            let this = Axis {
-                origin: low[axis],
-                // The cells of a period must fit exactly.
-                edge: if period.is_some() {
-                    fitting
-                } else {
-                    fitting.max(edge)
-                },
-                count,
-                stride,
-                period,
+            // The cells of a period must fit exactly.
+            let edge = if period.is_some() {
+                fitting
+            } else {
+                fitting.max(edge)
             };
+            let this = Axis::new(low[axis], edge, count, stride, period);
             stride *= count as usize;
             this
         });
         let mut cells = Cells {
             axes,
-            rooms: vec![Vec::new(); stride],
+            rooms: Rooms::new(stride, longest(&axes)),
+            spots: Vec::with_capacity(positions.len()),
             seats: Vec::with_capacity(positions.len()),
         };
         for position in positions {
@@ -111,8 +158,27 @@ impl<const D: usize> Cells<D> {
 
     /// Where a grain is filed.
     #[inline]
-    pub(super) fn seat(&self, particle: u32) -> &Seat<D> {
-        &self.seats[particle as usize]
+    pub(super) fn spot(&self, particle: u32) -> &Spot<D> {
+        &self.spots[particle as usize]
+    }
+
+    /// The place that a grain is filed under, in the image that is stored.
+    #[inline]
+    pub(super) fn anchor(&self, particle: u32) -> Vector<D> {
+        let mut anchor = self.spots[particle as usize].home;
+        let turns = self.turns(particle);
+        if turns != [0; D] {
+            for (axis, turns) in turns.into_iter().enumerate() {
+                anchor[axis] += f64::from(turns) * self.axes[axis].length();
+            }
+        }
+        anchor
+    }
+
+    /// From the image of a grain in the grid to the one that is stored.
+    #[inline]
+    pub(super) fn turns(&self, particle: u32) -> [i32; D] {
+        self.seats[particle as usize].turns
     }
 
     /// How many of the grains at these positions there are, on average, in a
@@ -127,35 +193,43 @@ impl<const D: usize> Cells<D> {
         positions.len() as f64 / cubes
     }
 
-    /// Says where a grain is filed that has been seated.
-    pub(super) fn seat_at(&mut self, particle: u32, anchor: &Vector<D>, reach: f64) {
-        let seat = &mut self.seats[particle as usize];
-        seat.anchor = *anchor;
-        seat.reach = reach;
+    /// Says how far a grain reaches from where it is filed.
+    pub(super) fn set_reach(&mut self, particle: u32, reach: f64) {
+        self.spots[particle as usize].reach = reach;
+        self.relink(particle);
     }
 
     /// Seats one more grain.
     pub(super) fn add(&mut self, position: &Vector<D>) {
-        let cell = self.cell_of(position);
-        let particle = self.seats.len() as u32;
-        self.seats.push(Seat {
-            anchor: *position,
-            reach: 0.0,
-            cell,
-            astray: self.is_astray(&cell),
-        });
-        self.link(particle);
+        let (seat, home) = self.seat_for(position);
+        self.seats.push(seat);
+        self.spots.push(Spot { home, reach: 0.0 });
+        self.link(self.seats.len() as u32 - 1);
     }
 
-    fn cell_of(&self, position: &Vector<D>) -> [i32; D] {
-        std::array::from_fn(|k| {
+    /// The cell for a position, and the image of the position in it.
+    #[inline]
+    fn seat_for(&self, position: &Vector<D>) -> (Seat<D>, Vector<D>) {
+        let mut home = *position;
+        let mut seat = Seat {
+            cell: [0; D],
+            turns: [0; D],
+        };
+        for k in 0..D {
             let axis = &self.axes[k];
-            let place = libm::floor((position[k] - axis.origin) / axis.edge);
-            match axis.period {
-                Some(_) => place as i32,
-                None => place.clamp(0.0, f64::from(axis.count - 1)) as i32,
+            let place = ((position[k] - axis.origin) * axis.per_edge).floor();
+            if axis.period.is_none() {
+                seat.cell[k] = place.clamp(0.0, f64::from(axis.count - 1)) as i32;
+                continue;
             }
-        })
+            let (cell, turns) = axis.wrapped(place as i32);
+            seat.cell[k] = cell;
+            seat.turns[k] = turns;
+            if turns != 0 {
+                home[k] -= f64::from(turns) * axis.length();
+            }
+        }
+        (seat, home)
     }
 
     /// How far a position lies outside the grid, in d, along axes that are not
@@ -176,6 +250,7 @@ impl<const D: usize> Cells<D> {
         if let Some(last) = self.seats.len().checked_sub(1) {
             self.unlink(last as u32);
             self.seats.pop();
+            self.spots.pop();
         }
     }
 
@@ -197,49 +272,153 @@ impl<const D: usize> Cells<D> {
 
     /// Files a grain under the cell of another position.
     pub(super) fn refile(&mut self, particle: u32, position: &Vector<D>, reach: f64) {
-        let cell = self.cell_of(position);
-        let seat = &mut self.seats[particle as usize];
-        seat.anchor = *position;
-        seat.reach = reach;
-        if cell != self.seats[particle as usize].cell {
+        let (seat, home) = self.seat_for(position);
+        self.spots[particle as usize] = Spot { home, reach };
+        if seat.cell == self.seats[particle as usize].cell {
+            self.seats[particle as usize] = seat;
+            self.relink(particle);
+        } else {
             self.unlink(particle);
-            let astray = self.is_astray(&cell);
-            let seat = &mut self.seats[particle as usize];
-            seat.cell = cell;
-            seat.astray = astray;
+            self.seats[particle as usize] = seat;
             self.link(particle);
         }
-    }
-
-    fn is_astray(&self, cell: &[i32; D]) -> bool {
-        (0..D).any(|axis| !(0..self.axes[axis].count).contains(&cell[axis]))
     }
 
     /// Tells the grid that `turns` periods have been taken off a grain's
     /// position.
     pub(super) fn unwind(&mut self, particle: u32, axis: usize, turns: i32) {
-        let Axis { count, period, .. } = self.axes[axis];
-        let seat = &mut self.seats[particle as usize];
-        seat.cell[axis] -= turns * count;
-        seat.anchor[axis] -= f64::from(turns) * period.map_or(0.0, |period| period.length);
-        let cell = seat.cell;
-        self.seats[particle as usize].astray = self.is_astray(&cell);
+        self.seats[particle as usize].turns[axis] -= turns;
+    }
+
+    /// A grain in a cell next to that of another, in terms of where they are
+    /// stored.
+    #[inline]
+    pub(super) fn found(&self, particle: u32, link: Link<D>) -> Found<D> {
+        let other = link.particle();
+        let mut turns = Link::<D>::turns_of(link.image());
+        let (own, theirs) = (self.turns(particle), self.turns(other));
+        for axis in 0..D {
+            turns[axis] += own[axis] - theirs[axis];
+        }
+        Found {
+            particle: other,
+            turns,
+        }
+    }
+
+    /// Calls `visit` for every grain within so many rings of cells whose place is
+    /// nearer to that of `particle` than both `reach` together with its own, and
+    /// perhaps for some that are farther away: with where it is filed, and the
+    /// squared distance. Itself is left out.
+    #[inline]
+    pub(super) fn for_each_in_reach(
+        &self,
+        particle: u32,
+        rings: i32,
+        reach: f64,
+        mut visit: impl FnMut(Link<D>, &Spot<D>, f64),
+    ) {
+        let own = self.spots[particle as usize].home;
+        let centre = self.seats[particle as usize].cell;
+        if 2 * rings as usize + 1 > MOST_STEPS {
+            return self.for_each_around(particle, rings, visit);
+        }
+        // The cells before, at and after its own along each axis.
+        let mut steps = [[Step::default(); MOST_STEPS]; D];
+        let mut ends = [0; D];
+        for (k, axis) in self.axes.iter().enumerate() {
+            for cell in centre[k] - rings..=centre[k] + rings {
+                if axis.period.is_none() && !(0..axis.count).contains(&cell) {
+                    continue;
+                }
+                let (within, beyond) = axis.wrapped(cell);
+                let place = own[k] - f64::from(beyond) * axis.length();
+                steps[k][ends[k]] = Step {
+                    row: within as usize * axis.stride,
+                    image: Link::<D>::part(beyond) << Link::<D>::place(k),
+                    place,
+                    told: self.rooms.told(place - axis.corner(within)),
+                };
+                ends[k] += 1;
+            }
+        }
+        let told_reach = self.rooms.told_reach(reach);
+        let mut here = own;
+        let mut told = [0.0; D];
+        let mut at = [0; D];
+        loop {
+            let (mut row, mut image) = (0, 0);
+            for axis in 1..D {
+                let step = &steps[axis][at[axis]];
+                row += step.row;
+                image += step.image;
+                here[axis] = step.place;
+                told[axis] = step.told;
+            }
+            for step in &steps[0][..ends[0]] {
+                here[0] = step.place;
+                told[0] = step.told;
+                let cell = row + step.row;
+                self.rooms.near(cell, &told, told_reach, |other| {
+                    if other != particle
+                        && let Some(spot) = self.spots.get(other as usize)
+                    {
+                        let squared = (spot.home - here).norm_squared();
+                        visit(Link::new(other, image + step.image), spot, squared);
+                    }
+                });
+            }
+            // The next row, the second axis running fastest.
+            let mut axis = 1;
+            while axis < D && at[axis] + 1 == ends[axis] {
+                at[axis] = 0;
+                axis += 1;
+            }
+            if axis >= D {
+                return;
+            }
+            at[axis] += 1;
+        }
+    }
+
+    /// The same in a box that is very narrow.
+    #[cold]
+    #[inline(never)]
+    fn for_each_around(
+        &self,
+        particle: u32,
+        rings: i32,
+        mut visit: impl FnMut(Link<D>, &Spot<D>, f64),
+    ) {
+        let own = self.spots[particle as usize].home;
+        self.for_each_cell(particle, rings, |turns, other| {
+            let spot = &self.spots[other as usize];
+            let mut apart = spot.home - own;
+            for axis in 0..D {
+                apart[axis] += f64::from(turns[axis]) * self.axes[axis].length();
+            }
+            let image = Link::<D>::image_of(&turns);
+            visit(Link::new(other, image), spot, apart.norm_squared());
+        });
     }
 
     /// Calls `visit` for every grain within `rings` cells of `particle`'s own,
     /// itself left out.
     pub(super) fn for_each_near(&self, particle: u32, rings: i32, mut visit: impl FnMut(Found<D>)) {
-        self.for_each_seat(particle, rings, |found, _| visit(found));
+        let own = self.turns(particle);
+        self.for_each_cell(particle, rings, |turns, other| {
+            let theirs = self.turns(other);
+            visit(Found {
+                particle: other,
+                turns: std::array::from_fn(|axis| turns[axis] + own[axis] - theirs[axis]),
+            });
+        });
     }
 
-    /// The same, with where they are filed.
+    /// Calls `visit` for every other grain within `rings` cells of that of
+    /// `particle`: how many periods away its cell is, and who it is.
     #[inline]
-    pub(super) fn for_each_seat(
-        &self,
-        particle: u32,
-        rings: i32,
-        mut visit: impl FnMut(Found<D>, &Seat<D>),
-    ) {
+    fn for_each_cell(&self, particle: u32, rings: i32, mut visit: impl FnMut([i32; D], u32)) {
         let centre = self.seats[particle as usize].cell;
         let mut low = centre.map(|c| c - rings);
         let mut high = centre.map(|c| c + rings);
@@ -255,89 +434,76 @@ impl<const D: usize> Cells<D> {
         let mut at = low;
         loop {
             let mut turns = [0; D];
-            let mut row = 0;
-            for axis in 1..D {
-                let (cell, turned) = self.wrapped(at[axis], axis);
-                row += cell * self.axes[axis].stride;
+            let mut index = 0;
+            for axis in 0..D {
+                let (cell, turned) = self.axes[axis].wrapped(at[axis]);
+                index += cell as usize * self.axes[axis].stride;
                 turns[axis] = turned;
             }
-            for along in low[0]..=high[0] {
-                at[0] = along;
-                let (cell, turned) = self.wrapped(along, 0);
-                turns[0] = turned;
-                for &other in &self.rooms[row + cell] {
-                    if other != particle {
-                        let seat = &self.seats[other as usize];
-                        let turns = if seat.astray {
-                            std::array::from_fn(|axis| {
-                                (at[axis] - seat.cell[axis]) / self.axes[axis].count
-                            })
-                        } else {
-                            turns
-                        };
-                        let found = Found {
-                            particle: other,
-                            turns,
-                        };
-                        visit(found, seat);
-                    }
+            self.rooms.each(index, |other| {
+                if other != particle {
+                    visit(turns, other);
                 }
-            }
-            // The next row, the second axis running fastest.
-            let mut axis = 1;
+            });
+            let mut axis = 0;
             while axis < D && at[axis] == high[axis] {
                 at[axis] = low[axis];
                 axis += 1;
             }
-            if axis >= D {
+            if axis == D {
                 return;
             }
             at[axis] += 1;
         }
     }
 
-    /// The cell of the grid that a cell is an image of, and how many periods
-    /// away it is.
-    #[inline]
-    fn wrapped(&self, cell: i32, axis: usize) -> (usize, i32) {
-        let count = self.axes[axis].count;
-        let (once, turns) = if cell < 0 {
-            (cell + count, -1)
-        } else if cell >= count {
-            (cell - count, 1)
-        } else {
-            (cell, 0)
-        };
-        if (0..count).contains(&once) {
-            (once as usize, turns)
-        } else {
-            (cell.rem_euclid(count) as usize, cell.div_euclid(count))
-        }
-    }
-
-    #[inline]
-    fn index(&self, cell: &[i32; D]) -> usize {
+    fn index_of(&self, particle: u32) -> usize {
+        let cell = &self.seats[particle as usize].cell;
         (0..D)
-            .map(|axis| self.wrapped(cell[axis], axis).0 * self.axes[axis].stride)
+            .map(|axis| cell[axis] as usize * self.axes[axis].stride)
             .sum()
     }
 
-    fn index_of(&self, particle: u32) -> usize {
-        self.index(&self.seats[particle as usize].cell)
+    /// A grain as the others in its cell know it.
+    fn guest(&self, particle: u32) -> Guest<D> {
+        let (seat, spot) = (
+            &self.seats[particle as usize],
+            &self.spots[particle as usize],
+        );
+        let corner = Vector::from_fn(|k, _| self.axes[k].corner(seat.cell[k]));
+        self.rooms.guest(&(spot.home - corner), spot.reach)
     }
 
     fn link(&mut self, particle: u32) {
-        let index = self.index_of(particle);
-        self.rooms[index].push(particle);
+        let (cell, guest) = (self.index_of(particle), self.guest(particle));
+        self.rooms.enter(cell, particle, &guest);
+    }
+
+    /// A grain is filed at another place in its cell, or reaches farther.
+    fn relink(&mut self, particle: u32) {
+        let (cell, guest) = (self.index_of(particle), self.guest(particle));
+        self.rooms.shift(cell, particle, &guest);
     }
 
     fn unlink(&mut self, particle: u32) {
-        let index = self.index_of(particle);
-        let room = &mut self.rooms[index];
-        if let Some(place) = room.iter().position(|other| *other == particle) {
-            room.swap_remove(place);
-        }
+        self.rooms.leave(self.index_of(particle), particle);
     }
+}
+
+/// A cell next to another along an axis.
+#[derive(Clone, Copy, Default)]
+struct Step {
+    row: usize,
+    image: u32,
+    /// Where the grain is, seen from that cell.
+    place: f64,
+    /// The same from its corner.
+    told: f32,
+}
+
+/// The longest edge.
+fn longest(axes: &[Axis]) -> f64 {
+    axes.iter().map(|axis| axis.edge).fold(0.0, f64::max)
 }
 
 /// Lower corner and lengths of a box that holds all positions, with periods for

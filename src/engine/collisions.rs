@@ -36,6 +36,8 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
         let normal = apart / distance;
         let stored_position = two.position;
         two.position = one.position - apart;
+        let contact = 0.5 * (one.diameter + two.diameter);
+        self.deepest = self.deepest.max(contact - distance);
         self.counts.guard += u64::from(self.traces.held_at(a, b, now));
         let mut impact = self.impact(a, one, normal, two.diameter);
         impact.obstacle = Obstacle::Particle {

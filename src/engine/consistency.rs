@@ -176,6 +176,8 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
         }
         self.world.near.check_tie(particle, &position)?;
         self.world.near.check_bed(particle, &self.world.bodies)?;
+        self.world
+            .check_glance(&self.model, particle, slot.bound())?;
         let near = View {
             model: &self.model,
             world: &self.world,

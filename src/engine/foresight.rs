@@ -33,7 +33,7 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
         }
         let mut found = std::mem::take(&mut self.scratch);
         found.clear();
-        found.extend_from_slice(self.world.near.list(particle));
+        found.extend(self.world.near.list(particle));
         let farthest = self.shortest_period();
         let mut looked = None;
         loop {

@@ -18,7 +18,7 @@ mod saved;
 use bed::Bed;
 pub(super) use saved::SavedNeighbours;
 
-use crate::engine::cells::{Cells, Found};
+use crate::engine::cells::{Cells, Found, Link};
 use crate::model::Boundary;
 use crate::particle::Vector;
 
@@ -28,7 +28,7 @@ const SHORT_LEASH: f64 = 0.2;
 /// Length of the longest, for grains with hardly a neighbour.
 const LONG_LEASH: f64 = 0.5;
 /// How many neighbours a list should hold on average.
-const WANTED: f64 = 9.0;
+const WANTED: f64 = 12.0;
 /// A grain whose long leash gives it more neighbours than this gets the short
 /// one.
 const MANY: usize = 16;
@@ -49,7 +49,7 @@ struct Tie<const D: usize> {
     leash: f64,
     /// Whether the long leash suits it.
     lonely: bool,
-    list: Vec<Found<D>>,
+    list: Vec<Link<D>>,
     /// Who lies still there, if anybody does.
     bed: Option<Box<Bed<D>>>,
     /// Whether the bed is that of the list as it is now.
@@ -65,7 +65,12 @@ pub(super) struct Neighbours<const D: usize> {
     largest: f64,
     /// The long leash, in d.
     longest: f64,
+    /// Within so many rings of cells is everybody who may be on a list: one, but
+    /// in a box that is narrower than lists reach.
+    rings: i32,
     periods: [f64; D],
+    /// Room for a list in the making.
+    fresh: Vec<Link<D>>,
 }
 
 impl<const D: usize> Neighbours<D> {
@@ -75,14 +80,17 @@ impl<const D: usize> Neighbours<D> {
         let long = leash_for(Cells::crowding(boundary, positions, largest), D);
         // Everybody is found in adjacent cells.
         let reach = (1.0 + 2.0 * long) * largest;
+        let cells = Cells::new(boundary, positions, reach);
         Neighbours {
-            cells: Cells::new(boundary, positions, reach),
+            rings: rings(&cells, reach),
+            cells,
             longest: long * largest,
             ties: positions.iter().map(|_| Tie::LOOSE).collect(),
             largest,
             periods: std::array::from_fn(|axis| {
                 boundary.period(axis).map_or(0.0, |period| period.length)
             }),
+            fresh: Vec::new(),
         }
     }
 
@@ -95,8 +103,7 @@ impl<const D: usize> Neighbours<D> {
     /// Says how large a grain at rest may become as long as this grid serves, in
     /// d.
     pub(super) fn set_radius(&mut self, particle: u32, radius: f64) {
-        let anchor = *self.anchor(particle);
-        self.cells.seat_at(particle, &anchor, radius);
+        self.cells.set_reach(particle, radius);
     }
 
     /// Takes back the grain that was added last.
@@ -111,8 +118,64 @@ impl<const D: usize> Neighbours<D> {
     }
 
     /// The list of a grain; empty if it is at rest.
-    pub(super) fn list(&self, particle: u32) -> &[Found<D>] {
+    pub(super) fn list(&self, particle: u32) -> impl Iterator<Item = Found<D>> {
+        let list = self.ties[particle as usize].list.iter();
+        list.map(move |link| self.cells.found(particle, *link))
+    }
+
+    /// Somebody on the list of a grain.
+    pub(super) fn listed(&self, particle: u32, other: u32) -> Option<Link<D>> {
+        let mut list = self.ties[particle as usize].list.iter();
+        list.find(|link| link.particle() == other).copied()
+    }
+
+    /// The same, as it is kept.
+    #[inline]
+    pub(super) fn links(&self, particle: u32) -> &[Link<D>] {
         &self.ties[particle as usize].list
+    }
+
+    /// An link of a grain's list, in terms of where grains are stored.
+    #[inline]
+    pub(super) fn found(&self, particle: u32, link: Link<D>) -> Found<D> {
+        self.cells.found(particle, link)
+    }
+
+    /// From the image of a grain in the grid to the one that is stored, in d.
+    #[inline]
+    pub(super) fn home_shift(&self, particle: u32) -> Vector<D> {
+        self.shift(self.cells.turns(particle))
+    }
+
+    /// What to add to the place of a grain in the grid to get the image of a
+    /// link, in d.
+    #[inline]
+    pub(super) fn link_shift(&self, link: Link<D>) -> Vector<D> {
+        self.shift(Link::<D>::turns_of(link.image()))
+    }
+
+    #[inline]
+    fn shift(&self, turns: [i32; D]) -> Vector<D> {
+        let mut shift = Vector::zeros();
+        if turns != [0; D] {
+            for axis in 0..D {
+                shift[axis] = f64::from(turns[axis]) * self.periods[axis];
+            }
+        }
+        shift
+    }
+
+    /// From the image of a grain in the grid to the one that is stored, in
+    /// periods.
+    #[inline]
+    pub(super) fn turns(&self, particle: u32) -> [i32; D] {
+        self.cells.turns(particle)
+    }
+
+    /// The place that a grain is tied to, in the image it is stored in.
+    #[inline]
+    pub(super) fn anchor(&self, particle: u32) -> Vector<D> {
+        self.cells.anchor(particle)
     }
 
     /// Whether a position is so far outside that a grain there has escaped.
@@ -123,6 +186,12 @@ impl<const D: usize> Neighbours<D> {
     /// Whether a grain has a list.
     pub(super) fn is_tied(&self, particle: u32) -> bool {
         self.ties[particle as usize].leash > 0.0
+    }
+
+    /// How far from its anchor a grain may go, in d.
+    #[inline]
+    pub(super) fn leash(&self, particle: u32) -> f64 {
+        ROUND * self.ties[particle as usize].leash
     }
 
     /// How far a grain may still move from `position`, in d; negative if too
@@ -146,11 +215,13 @@ impl<const D: usize> Neighbours<D> {
         velocity: &Vector<D>,
         radius: f64,
     ) {
-        self.untie_partners(particle);
+        if self.ties[particle as usize].leash == 0.0 {
+            self.forget_at_rest(particle);
+        }
         let speed = velocity.norm_squared().sqrt();
-        let mut list = std::mem::take(&mut self.ties[particle as usize].list);
+        let short = SHORT_LEASH * self.largest;
+        let mut list = std::mem::take(&mut self.fresh);
         loop {
-            let short = SHORT_LEASH * self.largest;
             let tie = &mut self.ties[particle as usize];
             tie.leash = if tie.lonely { self.longest } else { short };
             let leash = tie.leash;
@@ -162,7 +233,7 @@ impl<const D: usize> Neighbours<D> {
             };
             let anchor = position + velocity * ahead;
             self.cells.refile(particle, &anchor, radius + leash);
-            self.gather(particle, radius, &mut list);
+            self.gather(particle, &mut list);
             let tie = &mut self.ties[particle as usize];
             if leash > short && list.len() > MANY {
                 tie.lonely = false;
@@ -171,15 +242,23 @@ impl<const D: usize> Neighbours<D> {
             tie.lonely |= list.len() <= FEW;
             break;
         }
-        for other in &list {
-            let tie = &mut self.ties[other.particle as usize];
+        let mut old = std::mem::take(&mut self.ties[particle as usize].list);
+        for link in old.iter().filter(|link| !link.is_in(&list)) {
+            let tie = &mut self.ties[link.particle() as usize];
+            tie.forget(link.seen_from(particle));
+        }
+        for link in list.iter().filter(|link| !link.is_in(&old)) {
+            let tie = &mut self.ties[link.particle() as usize];
             if tie.leash > 0.0 {
-                tie.list.push(other.seen_from(particle));
+                tie.list.push(link.seen_from(particle));
                 tie.mover_changed();
             }
         }
+        old.clear();
+        old.extend_from_slice(&list);
+        self.fresh = list;
         let tie = &mut self.ties[particle as usize];
-        tie.list = list;
+        tie.list = old;
         tie.spoil();
     }
 
@@ -191,46 +270,37 @@ impl<const D: usize> Neighbours<D> {
         tie.leash = 0.0;
         tie.bed = None;
         tie.divided = false;
-        for other in std::mem::take(&mut tie.list) {
-            let theirs = &mut self.ties[other.particle as usize];
+        let list = std::mem::take(&mut tie.list);
+        let before = self.cells.turns(particle);
+        self.cells.refile(particle, position, radius);
+        let after = self.cells.turns(particle);
+        let home = self.cells.spot(particle).home;
+        for other in list {
+            let theirs = &mut self.ties[other.particle() as usize];
             theirs.spoil();
-            let mut apart = self.cells.seat(other.particle).anchor - position;
-            for (axis, turns) in other.turns.into_iter().enumerate() {
-                apart[axis] += f64::from(turns) * self.periods[axis];
+            let mut turns = Link::<D>::turns_of(other.image());
+            let mut apart = self.cells.spot(other.particle()).home - home;
+            for axis in 0..D {
+                // It may be filed in another image now.
+                turns[axis] += before[axis] - after[axis];
+                apart[axis] += f64::from(turns[axis]) * self.periods[axis];
             }
             let reach = self.largest + theirs.leash;
-            if apart.norm_squared() >= reach * reach {
-                let entry = other.seen_from(particle);
-                theirs.list.retain(|found| *found != entry);
+            let within = apart.norm_squared() < reach * reach;
+            let image = Link::<D>::image_of(&turns);
+            if !within || image != other.image() {
+                theirs.forget(other.seen_from(particle));
+            }
+            if within && image != other.image() && theirs.leash > 0.0 {
+                let link = Link::new(other.particle(), image);
+                theirs.list.push(link.seen_from(particle));
             }
         }
-        self.cells.refile(particle, position, radius);
     }
 
     /// Takes `turns` periods off a grain's position.
     pub(super) fn unwind(&mut self, particle: u32, axis: usize, turns: i32) {
         self.cells.unwind(particle, axis, turns);
-        let mut list = {
-            let tie = &mut self.ties[particle as usize];
-            tie.spoil();
-            std::mem::take(&mut tie.list)
-        };
-        for place in 0..list.len() {
-            let other = list[place].particle;
-            list[place].turns[axis] -= turns;
-            // In a narrow box several images of one grain are on the list: theirs
-            // are turned all at once, or one might be taken for another that has
-            // been turned already.
-            if list[..place].iter().any(|found| found.particle == other) {
-                continue;
-            }
-            self.ties[other as usize].spoil();
-            let theirs = &mut self.ties[other as usize].list;
-            for found in theirs.iter_mut().filter(|found| found.particle == particle) {
-                found.turns[axis] += turns;
-            }
-        }
-        self.ties[particle as usize].list = list;
     }
 
     /// Calls `visit` for every grain whose centre may be nearer to that of
@@ -258,61 +328,43 @@ impl<const D: usize> Neighbours<D> {
     }
 
     /// Lists everybody whose anchor is near enough to that of `particle`.
-    fn gather(&self, particle: u32, radius: f64, list: &mut Vec<Found<D>>) {
+    #[inline(never)]
+    fn gather(&self, particle: u32, list: &mut Vec<Link<D>>) {
         list.clear();
-        let own = self.cells.seat(particle);
-        let rings = self.rings_for(particle, radius + 0.5 * self.largest);
-        self.cells.for_each_seat(particle, rings, |found, seat| {
-            let mut apart = seat.anchor - own.anchor;
-            if found.turns != [0; D] {
-                for axis in 0..D {
-                    apart[axis] += f64::from(found.turns[axis]) * self.periods[axis];
-                }
-            }
-            let reach = own.reach + seat.reach;
-            if apart.norm_squared() < reach * reach {
-                list.push(found);
-            }
-        });
-    }
-
-    /// Takes a grain off the lists of all others.
-    fn untie_partners(&mut self, particle: u32) {
-        let mut partners = std::mem::take(&mut self.ties[particle as usize].list);
-        let at_rest = self.ties[particle as usize].leash == 0.0;
-        if at_rest {
-            // It was at rest: only the others know who lists it.
-            let rings = self.rings_for(particle, self.largest);
-            let anchor = *self.anchor(particle);
-            self.cells.for_each_seat(particle, rings, |found, seat| {
-                let leash = self.ties[found.particle as usize].leash;
-                let mut apart = seat.anchor - anchor;
-                for axis in 0..D {
-                    apart[axis] += f64::from(found.turns[axis]) * self.periods[axis];
-                }
-                // Farther off than this it is on nobody's list, see `release`.
-                let reach = self.largest + leash;
-                if leash > 0.0 && apart.norm_squared() * ROUND < reach * reach {
-                    partners.push(found);
+        let own = self.cells.spot(particle).reach;
+        self.cells
+            .for_each_in_reach(particle, self.rings, own, |link, spot, squared| {
+                let reach = own + spot.reach;
+                if squared < reach * reach {
+                    list.push(link);
                 }
             });
-        }
-        for other in &partners {
-            let entry = other.seen_from(particle);
-            let tie = &mut self.ties[other.particle as usize];
-            if let Some(place) = tie.list.iter().position(|found| *found == entry) {
-                tie.list.swap_remove(place);
-                if at_rest {
-                    tie.spoil();
-                } else {
-                    tie.mover_changed();
-                }
-            }
-        }
-        // To be filled again.
-        partners.clear();
-        self.ties[particle as usize].list = partners;
     }
+
+    /// Takes a grain that is at rest off the lists of all others: only they know
+    /// who lists it.
+    fn forget_at_rest(&mut self, particle: u32) {
+        let mut partners = Vec::new();
+        let farthest = self.largest + self.longest;
+        self.cells
+            .for_each_in_reach(particle, self.rings, farthest, |link, _, squared| {
+                let leash = self.ties[link.particle() as usize].leash;
+                // Farther off than this it is on nobody's list, see `release`.
+                let reach = self.largest + leash;
+                if leash > 0.0 && squared * ROUND < reach * reach {
+                    partners.push(link);
+                }
+            });
+        for link in partners {
+            let tie = &mut self.ties[link.particle() as usize];
+            tie.forget(link.seen_from(particle));
+            tie.spoil();
+        }
+    }
+}
+
+fn rings<const D: usize>(cells: &Cells<D>, reach: f64) -> i32 {
+    libm::ceil(reach / cells.least_edge()).clamp(1.0, 500.0) as i32
 }
 
 /// The leash, over the largest diameter, with which a grain has as many

@@ -13,6 +13,7 @@ use serde::{Deserialize, Serialize};
 use crate::engine::body::{Body, World, flight_of};
 use crate::engine::consistency::Vigil;
 use crate::engine::counts::{Counts, ModeCounts};
+use crate::engine::glances::Glances;
 use crate::engine::guards::Traces;
 use crate::engine::ledger::Ledger;
 use crate::engine::neighbours::{Neighbours, SavedNeighbours};
@@ -57,6 +58,9 @@ pub struct Saved<R, E, S, const D: usize> {
     speed_ceiling: f64,
     ceiling_until: Time,
     regrid_at: Time,
+    blur: f64,
+    epoch: Time,
+    epoch_events: u64,
     collapse: Option<Collapse>,
     escaped: Option<ParticleId>,
 }
@@ -110,6 +114,9 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
             speed_ceiling: self.speed_ceiling,
             ceiling_until: self.ceiling_until,
             regrid_at: self.regrid_at,
+            blur: self.world.blur,
+            epoch: self.world.glances.epoch(),
+            epoch_events: self.epoch_events,
             collapse: self.collapse.clone(),
             escaped: self.escaped,
         }
@@ -153,8 +160,10 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
                 modes,
                 largest: saved.largest,
                 ledger: saved.ledger,
-                blur: 0.0,
+                blur: saved.blur,
+                glances: Glances::new(saved.epoch),
             },
+            epoch_events: saved.epoch_events,
             memories: saved.memories,
             spins: saved.spins,
             slots: saved.slots,
@@ -176,9 +185,15 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
             ear: None,
             model,
         };
+        restored.world.begin_epoch(&restored.model, saved.epoch);
         for id in 0..count as u32 {
+            let bound = restored.slots[id as usize].bound();
+            restored.world.glances.set_bound(id, bound);
             restored.world.keep_blur(&restored.model, id);
             restored.check_grain(id).map_err(wrong)?;
+        }
+        if restored.world.blur != saved.blur {
+            return Err(wrong("a bound that is none"));
         }
         Ok(restored)
     }
@@ -242,6 +257,9 @@ impl<R, E, S, const D: usize> Saved<R, E, S, D> {
         if !is_size(self.deepest) || self.speed_ceiling.is_nan() || self.largest <= 0.0 {
             return Err(wrong("a bound that is none"));
         }
+        if !is_size(self.blur) || self.epoch > self.clock {
+            return Err(wrong("an epoch that has not begun"));
+        }
         if count > 0 && !is_size(self.largest) {
             return Err(wrong("the largest diameter is none"));
         }
@@ -266,6 +284,7 @@ impl<R, E, S, const D: usize> Saved<R, E, S, D> {
             counts.elastic,
             counts.guard,
             self.alarm_count,
+            self.epoch_events,
         ];
         if all.iter().any(|number| *number > MOST_EVENTS) {
             return Err(wrong("more events than any run has"));

@@ -5,6 +5,7 @@ use std::collections::BinaryHeap;
 use crate::engine::body::{Body, World, scale_at};
 use crate::engine::consistency::Vigil;
 use crate::engine::counts::{Counts, ModeCounts};
+use crate::engine::glances::Glances;
 use crate::engine::guards::Traces;
 use crate::engine::ledger::{Entry, Ledger};
 use crate::engine::neighbours::Neighbours;
@@ -85,7 +86,9 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
                 largest,
                 ledger: Ledger::default(),
                 blur: 0.0,
+                glances: Glances::new(settings.start),
             },
+            epoch_events: 0,
             memories: vec![MemoryOf::<M, D>::default(); count],
             spins: vec![SpinOf::<M, D>::default(); count],
             slots: vec![Slot::EMPTY; count],
@@ -149,6 +152,7 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
         self.store(particle);
         let position = self.world.bodies[index as usize].position;
         self.world.near.add(position);
+        self.world.glance(&self.model, index);
         self.memories.push(MemoryOf::<M, D>::default());
         self.spins.push(SpinOf::<M, D>::default());
         self.slots.push(Slot::EMPTY);
@@ -198,6 +202,7 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
         }
         self.world.masses.pop();
         self.world.near.forget_last();
+        self.world.glances.forget_last();
         self.traces.forget_last();
         self.queue.forget_last();
         self.memories.pop();

@@ -32,6 +32,8 @@ pub struct Simulation<M: Model<D>, const D: usize> {
     pub(super) alarm_count: u64,
     pub(super) traces: Traces,
     pub(super) counts: Counts,
+    /// Events up to the start of the present epoch.
+    pub(super) epoch_events: u64,
     /// Deepest overlap found at any event, in d.
     pub(super) deepest: f64,
     /// A bound on all speeds, good until an instant.
@@ -155,8 +157,18 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
             let radius = scale * self.world.bodies[particle as usize].radius;
             self.world.near.set_radius(particle, radius);
         }
+        self.begin_epoch();
         for particle in 0..count {
             self.tie_if_moving(particle);
+        }
+    }
+
+    /// Everybody is seen from now on as they are now.
+    pub(super) fn begin_epoch(&mut self) {
+        self.epoch_events = self.counts.total();
+        self.world.begin_epoch(&self.model, self.world.clock);
+        for (particle, slot) in (0..).zip(&self.slots) {
+            self.world.glances.set_bound(particle, slot.bound());
         }
     }
 
@@ -190,12 +202,16 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
         let flight = flight_of(&self.model, particle, body);
         let after = *clock - body.since;
         let scale = listed_scale::<M, D>(near.largest(), *largest);
+        let image = near.turns(particle);
         near.tie(
             particle,
             &flight.position(after),
             &flight.velocity(after),
             scale * body.radius,
         );
+        if near.turns(particle) != image {
+            self.world.glance(&self.model, particle);
+        }
     }
 }
 

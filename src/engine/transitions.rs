@@ -102,6 +102,7 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
             let position = body.position;
             let radius = self.listed_scale() * body.radius;
             self.world.near.release(particle, &position, radius);
+            self.world.glance(&self.model, particle);
         }
     }
 

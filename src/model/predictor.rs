@@ -162,7 +162,26 @@ pub trait Predictor<const D: usize, F: Flight<D>> {
         })
     }
 
-    /// The same for grains at rest.
+    /// A time before which a grain that has just collided with one at rest
+    /// certainly does not come back to it. Zero, which is provided, is always
+    /// right. `own` is its flight from the collision on; `place`, in d, the
+    /// centre of the other as seen from its own, then.
+    fn not_back_before(&self, _own: &F, _place: &Vector<D>) -> f64 {
+        0.0
+    }
+
+    /// The acceleration, in g, of a frame in which this flight is uniform, at all
+    /// times before and after its start, if there is one: any two flights of one
+    /// frame then move uniformly as seen from each other, and the engine tells
+    /// bounds on them itself. `None`, which is provided, is always right.
+    ///
+    /// It must follow from the flight's acceleration alone, and
+    /// [`Flight::advanced`] must go back in time as well.
+    fn frame(&self, _flight: &F) -> Option<Vector<D>> {
+        None
+    }
+
+    /// The same as [`not_before`](Predictor::not_before) for grains at rest.
     fn not_before_resting(&self, nook: &Nook<'_, D, F>) -> [f64; LANES] {
         let own_speed = nook.own.speed_bound(nook.horizon);
         std::array::from_fn(|lane| {

@@ -5,7 +5,9 @@ mod density;
 mod finding;
 mod frames;
 mod motion;
+mod replay;
 mod structure;
+mod transfer;
 
 pub(super) use arguments::AnalyseArguments;
 
@@ -18,6 +20,7 @@ use crate::program::analyse::finding::Finding;
 use crate::program::analyse::frames::{Sample, extent, paths, read};
 use crate::program::error::ProgramError;
 use crate::program::show::say;
+use crate::time::Time;
 
 /// What is to be measured on which frames.
 struct Task<'a, const D: usize> {
@@ -25,6 +28,9 @@ struct Task<'a, const D: usize> {
     name: String,
     options: &'a AnalyseArguments,
     samples: &'a [Sample<D>],
+    /// The last frame's time, of all that are there.
+    end: Time,
+    again: &'a transfer::Again<D>,
 }
 
 impl<const D: usize> Task<'_, D> {
@@ -105,6 +111,8 @@ impl<const D: usize> Task<'_, D> {
             Subject::Temperature => motion::temperature(self),
             Subject::Angle => density::angle(self),
             Subject::Msd | Subject::All => motion::msd(self),
+            Subject::Stress => transfer::stress(self, self.again),
+            Subject::Force => transfer::force(self, self.again),
         }
     }
 }
@@ -117,7 +125,7 @@ pub(super) fn analyse(arguments: &AnalyseArguments) -> Result<u8, ProgramError> 
         arguments.from.unwrap_or(f64::NEG_INFINITY),
         arguments.to.unwrap_or(f64::INFINITY),
     );
-    let (frames, count) = read(&file, window)?;
+    let (frames, count, end) = read(&file, window)?;
     let refuse = |reason: String| {
         Err(ProgramError::NotAnalysed {
             run: name.clone(),
@@ -142,8 +150,8 @@ pub(super) fn analyse(arguments: &AnalyseArguments) -> Result<u8, ProgramError> 
         ));
     }
     let findings = match first.dimension {
-        2 => measured::<2>(arguments, &name, &frames)?,
-        _ => measured::<3>(arguments, &name, &frames)?,
+        2 => measured::<2>(arguments, &name, &frames, end)?,
+        _ => measured::<3>(arguments, &name, &frames, end)?,
     };
     fs::create_dir_all(&out).map_err(ProgramError::io(out.display().to_string()))?;
     for finding in &findings {
@@ -158,19 +166,22 @@ fn measured<const D: usize>(
     arguments: &AnalyseArguments,
     name: &str,
     frames: &[Frame],
+    end: Time,
 ) -> Result<Vec<Finding>, ProgramError> {
     let samples = frames
         .iter()
         .map(Sample::<D>::of)
         .collect::<Result<Vec<_>, _>>()?;
     let all = arguments.subjects.is_empty() || arguments.subjects.contains(&Subject::All);
-    let mut subjects = match all {
-        true => Subject::EACH.to_vec(),
-        false => arguments.subjects.clone(),
-    };
+    let mut subjects = arguments.subjects.clone();
+    if all {
+        subjects.extend(Subject::EACH);
+        subjects.retain(|subject| *subject != Subject::All);
+    }
     subjects.sort_unstable();
     subjects.dedup();
     let windowed = arguments.from.is_some() || arguments.to.is_some();
+    let again = transfer::Again::new();
     let mut findings = Vec::new();
     for subject in subjects {
         let last_only = subject.is_of_one_frame() && !windowed;
@@ -179,6 +190,8 @@ fn measured<const D: usize>(
             name: name.to_owned(),
             options: arguments,
             samples: &samples[begin..],
+            end,
+            again: &again,
         };
         match task.measure(subject) {
             Ok(finding) => findings.push(finding),

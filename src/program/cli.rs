@@ -7,6 +7,7 @@ use clap::{Args, Parser, Subcommand};
 use crate::program::analyse::AnalyseArguments;
 use crate::program::bench::BenchArguments;
 use crate::program::compare::CompareArguments;
+use crate::program::reproduce::ReproduceArguments;
 use crate::program::sweep::{MOST_RUNS, Variation};
 use crate::program::why::WhyArguments;
 use crate::scenario::Assignment;
@@ -25,6 +26,7 @@ Examples:
   grainfall draw runs/deposition-1 --time 50
   grainfall analyse runs/deposition-1           packing, contacts, motion: CSV and SVG
   grainfall why runs/arch-1 --particle 1        asleep or awake, and why
+  grainfall reproduce all --quick               the paper's figures, from small systems
   grainfall validate --quick                    known physics, in a minute
   grainfall bench gas                           what a collision costs
 
@@ -174,6 +176,8 @@ pub(super) enum Command {
     Draw(DrawArguments),
     /// Measure packing, contacts and motion on the frames of a run
     Analyse(AnalyseArguments),
+    /// Make the figures and numbers of the paper again
+    Reproduce(ReproduceArguments),
     /// Measure known physics and say whether it comes out right
     Validate(ValidateArguments),
     /// Measure what events cost, in time and memory

@@ -121,6 +121,12 @@ pub enum ProgramError {
     /// A measurement is refused.
     #[error(transparent)]
     Analysis(#[from] AnalysisError),
+    /// A figure of the paper can't be made again.
+    #[error("this can't be reproduced: {what}")]
+    Reproduction {
+        /// What is missing or wrong.
+        what: String,
+    },
     /// A plot can't be drawn.
     #[error(transparent)]
     Plot(#[from] PlotError),
@@ -150,6 +156,7 @@ impl ProgramError {
             | ProgramError::NoGrain { .. }
             | ProgramError::Policies { .. }
             | ProgramError::Unresumable { .. }
+            | ProgramError::Reproduction { .. }
             | ProgramError::Sweep(_)
             | ProgramError::NotAnalysed { .. }
             | ProgramError::Analysis(_)

@@ -9,7 +9,9 @@ mod plan;
 mod values;
 
 pub(super) use crate::program::cli::SweepArguments;
+pub(super) use crew::{Crew, Tasks};
 pub use error::SweepError;
+pub(super) use outcome::Outcome;
 pub(super) use values::Variation;
 
 use std::path::PathBuf;
@@ -23,9 +25,8 @@ use crate::program::error::ProgramError;
 use crate::program::progress::{bar, show_on, time_left};
 use crate::program::show::say;
 use crate::program::signals::Signals;
-use crate::program::sweep::crew::Crew;
 use crate::program::sweep::folder::SweepFolder;
-use crate::program::sweep::outcome::{Outcome, failures, for_people, runs_csv};
+use crate::program::sweep::outcome::{failures, for_people, runs_csv};
 use crate::program::sweep::plan::Plan;
 
 /// The most runs of a sweep.

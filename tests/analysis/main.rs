@@ -5,6 +5,7 @@ mod density;
 mod motion;
 #[cfg(feature = "program")]
 mod program;
+mod transfer;
 
 use grainfall::analysis::Container;
 use grainfall::{Particle, Vector};

@@ -201,3 +201,145 @@ fn what_can_not_be_analysed_is_refused_by_name() {
     assert!(printed(&output).contains("profile"));
     assert!(String::from_utf8_lossy(&output.stderr).contains("note: no msd: "));
 }
+
+#[test]
+fn stress_and_force_are_those_of_the_run_itself() {
+    let folder = tempfile::tempdir().unwrap();
+    let place = folder.path();
+    let small = [
+        "run",
+        "deposition",
+        "--set",
+        "grains.1.rain.count=60",
+        "--set",
+        "boundaries=[{periodic={length=4}},{periodic={length=4}},\"open\"]",
+        "--set",
+        "parameters.elastic_speed=1e-3",
+        "--out",
+        "heap",
+        "--quiet",
+    ];
+    let ran = Command::new(env!("CARGO_BIN_EXE_grainfall"))
+        .current_dir(place)
+        .args(small)
+        .status();
+    assert!(ran.unwrap().success());
+    let files = |folder: &Path| -> Vec<(String, Vec<u8>)> {
+        let mut files: Vec<_> = fs::read_dir(folder)
+            .unwrap()
+            .map(|entry| entry.unwrap().path())
+            .filter(|file| file.is_file())
+            .map(|file| (file.display().to_string(), fs::read(&file).unwrap()))
+            .collect();
+        files.sort();
+        files
+    };
+    let run = place.join("heap");
+    let before = files(&run);
+    let said = printed(&analyse(place, &["heap", "stress", "force", "--bins", "3"]));
+    let hash = "the last frame came out the same, bit by bit";
+    assert_eq!(said.matches(hash).count(), 2, "{said}");
+    assert_eq!(files(&run), before, "the run's own files were touched");
+    // Momentum: each grain comes with 2.5 downwards and ends at rest; from its
+    // first collision on it is heavy, until it sleeps.
+    let table = run.join("analysis/force.csv");
+    let times = column(&table, "time");
+    let length = 2.0 * times[0];
+    assert!((times[1] - times[0] - length).abs() < 1.0e-9);
+    let upwards: f64 = ["fixed_z", "asleep_z", "by_sleep_z"]
+        .iter()
+        .flat_map(|name| column(&table, name))
+        .sum();
+    let taken = -upwards * length;
+    assert!(taken > 60.0 * 2.5, "{taken}");
+    let pressures = column(&run.join("analysis/stress.csv"), "collisional_zz");
+    assert_eq!(pressures.len(), 3);
+    assert!(pressures.iter().all(|pressure| *pressure > 0.0));
+    // Another scenario goes another way.
+    let text = fs::read_to_string(run.join("scenario.toml")).unwrap();
+    fs::write(
+        run.join("scenario.toml"),
+        text.replace("seed = 1", "seed = 2"),
+    )
+    .unwrap();
+    fs::remove_dir_all(run.join("analysis")).unwrap();
+    let error = refused(&analyse(place, &["heap", "stress", "--bins", "3"]));
+    assert!(error.contains("it comes to another frame"), "{error}");
+    assert!(!run.join("analysis").exists());
+    let error = refused(&analyse(place, &["heap/frames.xyz", "force"]));
+    assert!(
+        error.contains("with its scenario.toml, is wanted"),
+        "{error}"
+    );
+}
+
+#[test]
+fn velocities_are_relative_to_ground_that_turns() {
+    let folder = tempfile::tempdir().unwrap();
+    let scenario = "\
+dimension = 2
+gravity = 1.0
+boundaries = [\"open\", \"open\"]
+rotation = { angular_velocity = 0.1, of = \"ground\" }
+stop = { time = 0.5 }
+
+[[grains]]
+position = [-0.5, -3.0]
+mode = \"fixed\"
+
+[[grains]]
+position = [0.5, -3.0]
+mode = \"fixed\"
+
+[[grains]]
+position = [0.0, -2.1339]
+mode = \"frozen\"
+
+[[grains]]
+position = [4.0, 3.0]
+velocity = [-0.3, 0.4]
+";
+    fs::write(folder.path().join("carried.toml"), scenario).unwrap();
+    let ran = Command::new(env!("CARGO_BIN_EXE_grainfall"))
+        .current_dir(folder.path())
+        .args(["run", "carried.toml", "--out", "carried", "--quiet"])
+        .status();
+    assert!(ran.unwrap().success());
+    let found = |component: &str| {
+        let only = [
+            "carried",
+            "velocity",
+            "--bins",
+            "1",
+            "--slab",
+            "y=-2.5,-1.5",
+            "--to",
+            "0",
+        ];
+        let mut arguments = only.to_vec();
+        arguments.extend(["--component", component]);
+        printed(&analyse(folder.path(), &arguments));
+        column(
+            &folder.path().join("carried/analysis/velocity.csv"),
+            &format!("velocity_{component}"),
+        )
+    };
+    // The frozen one is carried along at Ω r, as the ground is; so it rests.
+    let text = fs::read_to_string(folder.path().join("carried/frames.xyz")).unwrap();
+    assert!(
+        text.lines()
+            .nth(4)
+            .unwrap()
+            .starts_with("2 0.0 -2.1339 0.0 0.2133"),
+        "{text}"
+    );
+    for component in ["x", "y"] {
+        assert!(found(component).iter().all(|speed| speed.abs() < 1.0e-15));
+    }
+    // The one that flies has the velocity of ground at (4, 3).
+    let said = printed(&analyse(
+        folder.path(),
+        &["carried", "velocity", "--to", "0", "--bins", "1"],
+    ));
+    assert!(said.contains("greatest 0.0000"), "{said}");
+}

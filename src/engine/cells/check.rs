@@ -10,11 +10,14 @@ impl<const D: usize> Cells<D> {
     /// A grain has to sit in the cell of its anchor, and in that cell's room.
     pub(in crate::engine) fn check_seat(&self, particle: u32) -> Result<(), String> {
         let seat = &self.seats[particle as usize];
-        let anchor = &seat.anchor;
+        let home = &self.spots[particle as usize].home;
         for axis in 0..D {
             let this = &self.axes[axis];
+            if !(0..this.count).contains(&seat.cell[axis]) {
+                return Err(format!("grain {particle} sits in no cell of the grid"));
+            }
             let cell = f64::from(seat.cell[axis]);
-            let mut place = (anchor[axis] - this.origin) / this.edge;
+            let mut place = (home[axis] - this.origin) / this.edge;
             if this.period.is_none() {
                 place = place.clamp(0.0, f64::from(this.count) - ROUND);
             }
@@ -24,7 +27,7 @@ impl<const D: usize> Cells<D> {
                 ));
             }
         }
-        if !self.rooms[self.index_of(particle)].contains(&particle) {
+        if !self.rooms.holds(self.index_of(particle), particle) {
             return Err(format!("grain {particle} is not linked in its cell"));
         }
         Ok(())

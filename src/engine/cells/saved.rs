@@ -4,12 +4,12 @@
 use nalgebra::SVector;
 use serde::{Deserialize, Serialize};
 
-use crate::engine::cells::{Axis, Cells, Seat};
+use crate::engine::cells::{Axis, Cells, Rooms, Seat, Spot, longest};
 use crate::model::Boundary;
 use crate::particle::Vector;
 
-/// No cell of a run has coordinates beyond this.
-const FARTHEST: i32 = 1 << 30;
+/// No grain is stored farther away from the grid than this, in periods.
+const FARTHEST: u32 = 1 << 30;
 
 /// What a grid is made again from.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -17,8 +17,8 @@ const FARTHEST: i32 = 1 << 30;
 pub(in crate::engine) struct SavedCells<const D: usize> {
     /// Origin, edge and number of cells along each axis.
     axes: Vec<(f64, f64, i32)>,
-    /// By grain.
-    cells: Vec<SVector<i32, D>>,
+    /// The cell of each grain, and the periods from there to where it is stored.
+    cells: Vec<(SVector<i32, D>, SVector<i32, D>)>,
     /// In which order the grains have to be seated: cell by cell.
     order: Vec<u32>,
 }
@@ -34,13 +34,14 @@ impl<const D: usize> Cells<D> {
             cells: self
                 .seats
                 .iter()
-                .map(|seat| SVector::from(seat.cell))
+                .map(|seat| (SVector::from(seat.cell), SVector::from(seat.turns)))
                 .collect(),
-            order: self.rooms.iter().flatten().copied().collect(),
+            order: self.rooms.all(),
         }
     }
 
-    /// The grid of `count` grains that was saved.
+    /// The grid of `count` grains that was saved; where exactly in their cells
+    /// they are filed has still to be [said](Cells::file_at).
     ///
     /// # Errors
     ///
@@ -63,13 +64,7 @@ impl<const D: usize> Cells<D> {
             if along < 1 || !(edge > 0.0 && edge.is_finite() && origin.is_finite()) || !fits {
                 return Err("the grid is not one for this box");
             }
-            axes.push(Axis {
-                origin,
-                edge,
-                count: along,
-                stride,
-                period,
-            });
+            axes.push(Axis::new(origin, edge, along, stride, period));
             stride = stride
                 .checked_mul(along as usize)
                 // As many as a grid is ever given.
@@ -78,25 +73,28 @@ impl<const D: usize> Cells<D> {
         }
         let axes = <[Axis; D]>::try_from(axes).map_err(|_| "the grid has too few axes")?;
         let mut seats = Vec::with_capacity(count);
-        for cell in &saved.cells {
-            if cell.iter().any(|along| along.abs_diff(0) > FARTHEST as u32) {
+        for (cell, turns) in &saved.cells {
+            let outside = (0..D).any(|k| !(0..axes[k].count).contains(&cell[k]));
+            if outside || turns.iter().any(|turns| turns.abs_diff(0) > FARTHEST) {
                 return Err("a grain lies in no cell");
             }
             seats.push(Seat {
-                anchor: Vector::zeros(),
-                reach: 0.0,
                 cell: (*cell).into(),
-                astray: false,
+                turns: (*turns).into(),
             });
         }
         let mut cells = Cells {
             axes,
-            rooms: vec![Vec::new(); stride],
+            rooms: Rooms::new(stride, longest(&axes)),
+            spots: vec![
+                Spot {
+                    home: Vector::zeros(),
+                    reach: 0.0,
+                };
+                count
+            ],
             seats,
         };
-        for id in 0..count {
-            cells.seats[id].astray = cells.is_astray(&cells.seats[id].cell);
-        }
         let mut seated = vec![false; count];
         for &particle in &saved.order {
             match seated.get_mut(particle as usize) {
@@ -106,5 +104,12 @@ impl<const D: usize> Cells<D> {
             cells.link(particle);
         }
         Ok(cells)
+    }
+
+    /// Says where a grain is filed.
+    pub(in crate::engine) fn file_at(&mut self, particle: u32, home: &Vector<D>, reach: f64) {
+        let home = *home;
+        self.spots[particle as usize] = Spot { home, reach };
+        self.relink(particle);
     }
 }

@@ -5,7 +5,7 @@
 //! has to be fetched from afar.
 
 use crate::engine::body::Body;
-use crate::engine::cells::Found;
+use crate::engine::cells::{Cells, Link};
 use crate::engine::neighbours::{Neighbours, Tie};
 use crate::model::{LANES, Resting};
 use crate::particle::Vector;
@@ -17,16 +17,17 @@ use crate::particle::Vector;
 pub(in crate::engine) struct Bed<const D: usize> {
     pub(in crate::engine) resting: Vec<Resting<D>>,
     /// Who lies there, in this order.
-    pub(in crate::engine) still: Vec<Found<D>>,
-    movers: Vec<Found<D>>,
+    pub(in crate::engine) still: Vec<Link<D>>,
+    movers: Vec<Link<D>>,
 }
 
 impl<const D: usize> Bed<D> {
     fn make(
-        list: &[Found<D>],
-        anchor: &Vector<D>,
+        list: &[Link<D>],
+        place: &Vector<D>,
         radius: f64,
         periods: &[f64; D],
+        cells: &Cells<D>,
         bodies: &[Body<D>],
     ) -> Self {
         let mut bed = Bed {
@@ -34,10 +35,10 @@ impl<const D: usize> Bed<D> {
             still: Vec::new(),
             movers: Vec::new(),
         };
-        for found in list {
-            let body = &bodies[found.particle as usize];
+        for link in list {
+            let body = &bodies[link.particle() as usize];
             if !body.still {
-                bed.movers.push(*found);
+                bed.movers.push(*link);
                 continue;
             }
             let lane = bed.still.len() % LANES;
@@ -47,11 +48,14 @@ impl<const D: usize> Bed<D> {
                     distances: [0.0; LANES],
                 });
             }
-            bed.still.push(*found);
+            bed.still.push(*link);
+            // Those at rest are filed where they are.
+            let home = &cells.spot(link.particle()).home;
+            let turns = Link::<D>::turns_of(link.image());
             if let Some(last) = bed.resting.last_mut() {
                 for axis in 0..D {
-                    let image = f64::from(found.turns[axis]) * periods[axis];
-                    last.places[axis][lane] = (body.position[axis] - anchor[axis]) + image;
+                    let image = f64::from(turns[axis]) * periods[axis];
+                    last.places[axis][lane] = (home[axis] - place[axis]) + image;
                 }
                 last.distances[lane] = radius + body.radius;
             }
@@ -61,10 +65,31 @@ impl<const D: usize> Bed<D> {
 }
 
 impl<const D: usize> Tie<D> {
+    /// Takes somebody off the list who moves.
+    #[inline]
+    pub(super) fn forget(&mut self, link: Link<D>) {
+        if let Some(place) = self.list.iter().position(|listed| *listed == link) {
+            self.list.swap_remove(place);
+            self.mover_changed();
+        }
+    }
+
     /// The list has changed, or one of those at rest is going to.
     #[inline]
     pub(super) fn spoil(&mut self) {
         self.divided = false;
+    }
+
+    /// Divides the list into those at rest, if there are any, and the others.
+    #[inline(never)]
+    fn divide(&mut self, particle: u32, periods: &[f64; D], cells: &Cells<D>, bodies: &[Body<D>]) {
+        let is_still = |link: &Link<D>| bodies[link.particle() as usize].still;
+        self.bed = self.list.iter().any(is_still).then(|| {
+            let radius = bodies[particle as usize].radius;
+            let place = &cells.spot(particle).home;
+            Box::new(Bed::make(&self.list, place, radius, periods, cells, bodies))
+        });
+        self.divided = true;
     }
 
     /// A grain that moves has come to the list or left it: if nobody there is at
@@ -76,33 +101,23 @@ impl<const D: usize> Tie<D> {
 }
 
 impl<const D: usize> Neighbours<D> {
-    /// Those at rest on the list of a grain, if anybody is, and those that move.
+    /// Sees to it that the [bed](Self::bed) of a grain is that of its list.
     #[inline]
-    pub(in crate::engine) fn bed(
-        &mut self,
-        particle: u32,
-        bodies: &[Body<D>],
-    ) -> (Option<&Bed<D>>, &[Found<D>]) {
+    pub(in crate::engine) fn make_bed(&mut self, particle: u32, bodies: &[Body<D>]) {
         let tie = &mut self.ties[particle as usize];
         if !tie.divided {
-            let is_still = |found: &Found<D>| bodies[found.particle as usize].still;
-            tie.bed = tie.list.iter().any(is_still).then(|| {
-                let radius = bodies[particle as usize].radius;
-                let anchor = &self.cells.seat(particle).anchor;
-                Box::new(Bed::make(&tie.list, anchor, radius, &self.periods, bodies))
-            });
-            tie.divided = true;
+            tie.divide(particle, &self.periods, &self.cells, bodies);
         }
+    }
+
+    /// Those at rest on the list of a grain, if anybody is, and those that move.
+    #[inline]
+    pub(in crate::engine) fn bed(&self, particle: u32) -> (Option<&Bed<D>>, &[Link<D>]) {
+        let tie = &self.ties[particle as usize];
         match &tie.bed {
             Some(bed) => (Some(bed), &bed.movers),
             None => (None, &tie.list),
         }
-    }
-
-    /// The place that a grain is tied to.
-    #[inline]
-    pub(in crate::engine) fn anchor(&self, particle: u32) -> &Vector<D> {
-        &self.cells.seat(particle).anchor
     }
 
     /// Who lies still in a bed has to, and where it is said to.
@@ -118,7 +133,8 @@ impl<const D: usize> Neighbours<D> {
         if bed.still.len() + bed.movers.len() != tie.list.len() {
             return Err(format!("the bed of grain {particle} is not its list"));
         }
-        for (place, found) in bed.still.iter().enumerate() {
+        for (place, link) in bed.still.iter().enumerate() {
+            let found = self.found(particle, *link);
             let body = &bodies[found.particle as usize];
             let (few, lane) = (&bed.resting[place / LANES], place % LANES);
             for axis in 0..D {

@@ -1,6 +1,6 @@
 //! Whether the lists' book-keeping holds.
 
-use crate::engine::cells::Found;
+use crate::engine::cells::Link;
 use crate::engine::neighbours::Neighbours;
 use crate::particle::Vector;
 
@@ -29,18 +29,16 @@ impl<const D: usize> Neighbours<D> {
         if tie.leash == 0.0 && !tie.list.is_empty() {
             return Err(format!("grain {particle} is at rest and has a list"));
         }
-        for (place, entry) in tie.list.iter().enumerate() {
-            let Some(other) = self.ties.get(entry.particle as usize) else {
-                return Err(format!(
-                    "grain {particle} lists {entry:?}, who is not there"
-                ));
+        for (place, link) in tie.list.iter().enumerate() {
+            let Some(other) = self.ties.get(link.particle() as usize) else {
+                return Err(format!("grain {particle} lists {link:?}, who is not there"));
             };
-            if tie.list[..place].contains(entry) {
-                return Err(format!("grain {particle} lists {entry:?} twice"));
+            if tie.list[..place].contains(link) {
+                return Err(format!("grain {particle} lists {link:?} twice"));
             }
-            if other.leash > 0.0 && !other.list.contains(&entry.seen_from(particle)) {
+            if other.leash > 0.0 && !other.list.contains(&link.seen_from(particle)) {
                 return Err(format!(
-                    "grain {particle} lists {entry:?}, who does not list it"
+                    "grain {particle} lists {link:?}, who does not list it"
                 ));
             }
         }
@@ -61,17 +59,17 @@ impl<const D: usize> Neighbours<D> {
             if other == particle as usize {
                 continue;
             }
-            let apart = self.anchor(other as u32) - self.anchor(particle);
+            let home = |id: u32| self.cells.spot(id).home;
+            let apart = home(other as u32) - home(particle);
             let contact = radius_of(particle) + radius_of(other as u32);
             let reach = ROUND * (contact + tie.leash + their.leash);
             let mut absent = None;
             self.for_each_image(&apart, reach, |turns| {
-                let found = Found {
-                    particle: other as u32,
-                    turns,
-                };
-                if !tie.list.contains(&found) {
-                    absent = Some(found);
+                if !tie
+                    .list
+                    .contains(&Link::new(other as u32, Link::<D>::image_of(&turns)))
+                {
+                    absent = Some((other, turns));
                 }
             });
             if let Some(absent) = absent {
@@ -121,21 +119,21 @@ impl<const D: usize> Neighbours<D> {
 #[cfg(test)]
 impl<const D: usize> Neighbours<D> {
     /// Plants a fault: a grain forgets the first on its list; told who it was.
-    pub(in crate::engine) fn forget_first(&mut self, particle: u32) -> Found<D> {
-        self.ties[particle as usize].list.swap_remove(0)
+    pub(in crate::engine) fn forget_first(&mut self, particle: u32) -> u32 {
+        let list = &mut self.ties[particle as usize].list;
+        list.swap_remove(0).particle()
     }
 
     /// Plants a fault: a grain is not on the list of another.
-    pub(in crate::engine) fn forget(&mut self, particle: u32, entry: Found<D>) {
+    pub(in crate::engine) fn forget(&mut self, particle: u32, other: u32) {
         let list = &mut self.ties[particle as usize].list;
-        list.retain(|found| *found != entry);
+        list.retain(|link| link.particle() != other);
     }
 
     /// Plants a fault: a grain is filed in another cell than its own.
     pub(in crate::engine) fn misfile(&mut self, particle: u32, position: &Vector<D>) {
-        let reach = self.cells.seat(particle).reach;
-        let anchor = self.cells.seat(particle).anchor;
-        self.cells.refile(particle, position, reach);
-        self.cells.seat_at(particle, &anchor, reach);
+        let spot = *self.cells.spot(particle);
+        self.cells.refile(particle, position, spot.reach);
+        self.cells.file_at(particle, &spot.home, spot.reach);
     }
 }

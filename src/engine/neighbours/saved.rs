@@ -1,15 +1,11 @@
 //! Neighbour lists that are saved and made again as they were.
 
-use nalgebra::SVector;
 use serde::{Deserialize, Serialize};
 
-use crate::engine::cells::{Cells, Found, SavedCells};
+use crate::engine::cells::{Cells, Link, SavedCells};
 use crate::engine::neighbours::{Neighbours, Tie};
 use crate::model::Boundary;
 use crate::particle::Vector;
-
-/// No neighbour is more periods away than this.
-const FARTHEST: u32 = 1 << 30;
 
 /// What the lists are made again from.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -24,23 +20,23 @@ pub(in crate::engine) struct SavedNeighbours<const D: usize> {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(bound = "")]
 struct SavedTie<const D: usize> {
-    anchor: Vector<D>,
+    home: Vector<D>,
     leash: f64,
     lonely: bool,
-    /// Who is listed, how many periods away.
-    list: Vec<(u32, SVector<i32, D>)>,
+    /// Who is listed, and in which image.
+    list: Vec<(u32, u32)>,
 }
 
 impl<const D: usize> Neighbours<D> {
     pub(in crate::engine) fn save(&self) -> SavedNeighbours<D> {
         let of = |(particle, tie): (usize, &Tie<D>)| SavedTie {
-            anchor: *self.anchor(particle as u32),
+            home: self.cells.spot(particle as u32).home,
             leash: tie.leash,
             lonely: tie.lonely,
             list: tie
                 .list
                 .iter()
-                .map(|found| (found.particle, SVector::from(found.turns)))
+                .map(|link| (link.particle(), link.image()))
                 .collect(),
         };
         SavedNeighbours {
@@ -70,20 +66,17 @@ impl<const D: usize> Neighbours<D> {
         let mut ties = Vec::with_capacity(count);
         for (particle, tie) in saved.ties.iter().enumerate() {
             if !(tie.leash >= 0.0 && tie.leash.is_finite())
-                || tie.anchor.iter().any(|x| !x.is_finite())
+                || tie.home.iter().any(|x| !x.is_finite())
             {
                 return Err("a leash has no length");
             }
             let mut list = Vec::with_capacity(tie.list.len());
-            for (other, turns) in &tie.list {
-                let is_there = (*other as usize) < count && *other as usize != particle;
-                if !is_there || turns.iter().any(|turns| turns.abs_diff(0) > FARTHEST) {
+            for &(other, image) in &tie.list {
+                let is_there = (other as usize) < count && other as usize != particle;
+                if !is_there {
                     return Err("a list names nobody");
                 }
-                list.push(Found {
-                    particle: *other,
-                    turns: (*turns).into(),
-                });
+                list.push(Link::new(other, image));
             }
             ties.push(Tie {
                 leash: tie.leash,
@@ -96,9 +89,11 @@ impl<const D: usize> Neighbours<D> {
         let mut cells = Cells::restore(boundary, &saved.cells, count)?;
         for (particle, tie) in (0..).zip(&saved.ties) {
             let reach = radius_of(saved.largest, particle) + tie.leash;
-            cells.seat_at(particle, &tie.anchor, reach);
+            cells.file_at(particle, &tie.home, reach);
         }
+        let reach = saved.largest + 2.0 * saved.longest;
         let neighbours = Neighbours {
+            rings: super::rings(&cells, reach),
             cells,
             ties,
             largest: saved.largest,
@@ -106,6 +101,7 @@ impl<const D: usize> Neighbours<D> {
             periods: std::array::from_fn(|axis| {
                 boundary.period(axis).map_or(0.0, |period| period.length)
             }),
+            fresh: Vec::new(),
         };
         if !neighbours.are_mutual() {
             return Err("two lists do not agree");
@@ -120,9 +116,9 @@ impl<const D: usize> Neighbours<D> {
             if tie.leash == 0.0 {
                 return tie.list.is_empty();
             }
-            tie.list.iter().all(|found| {
-                let theirs = &self.ties[found.particle as usize];
-                theirs.leash == 0.0 || theirs.list.contains(&found.seen_from(particle as u32))
+            tie.list.iter().all(|link| {
+                let theirs = &self.ties[link.particle() as usize];
+                theirs.leash == 0.0 || theirs.list.contains(&link.seen_from(particle as u32))
             })
         })
     }

@@ -25,6 +25,12 @@ run's, or beside the file of frames; those that are there are replaced.
   temperature  granular temperature in bins along --axis
   angle        angle of the free surface over --across, fitted by a line
   msd          mean square displacement against time
+  stress       stress in slabs across --axis, collisional and kinetic
+  force        force on fixed grains, on those asleep and on walls against time
+
+stress and force need the collisions between frames: the run is carried out again
+up to --to, which takes as long as it did, and watched from --from on; nothing of
+the run is written to. They are measured only if asked for by name.
 
 Of several frames the means are shown, with standard errors that count their
 correlation by block averages. profile, map, rdf, contacts, fabric and angle take
@@ -51,10 +57,10 @@ pub(in crate::program) struct AnalyseArguments {
     /// How many bins [default: 2 a diameter; 1 for velocity, temperature, angle; 50 for rdf]
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..=100_000))]
     pub(super) bins: Option<u32>,
-    /// Only frames from this time on, in √(d/g)
+    /// Only frames, and collisions, from this time on, in √(d/g)
     #[arg(long, value_name = "T", value_parser = finite, allow_negative_numbers = true)]
     pub(super) from: Option<f64>,
-    /// Only frames up to this time, in √(d/g)
+    /// Only frames, and collisions, up to this time, in √(d/g)
     #[arg(long, value_name = "T", value_parser = finite, allow_negative_numbers = true)]
     pub(super) to: Option<f64>,
     /// Only grains whose centres lie between two places, in d, such as x=-3,3; for
@@ -87,11 +93,13 @@ pub(super) enum Subject {
     Temperature,
     Angle,
     Msd,
+    Stress,
+    Force,
     All,
 }
 
 impl Subject {
-    /// All but the last.
+    /// What one has without asking for it by name.
     pub(super) const EACH: [Subject; 9] = [
         Subject::Profile,
         Subject::Map,
@@ -116,6 +124,8 @@ impl Subject {
             Subject::Temperature => "temperature",
             Subject::Angle => "angle",
             Subject::Msd => "msd",
+            Subject::Stress => "stress",
+            Subject::Force => "force",
             Subject::All => "all",
         }
     }
@@ -124,7 +134,12 @@ impl Subject {
     pub(super) fn is_of_one_frame(self) -> bool {
         !matches!(
             self,
-            Subject::Velocity | Subject::Temperature | Subject::Msd | Subject::All
+            Subject::Velocity
+                | Subject::Temperature
+                | Subject::Msd
+                | Subject::Stress
+                | Subject::Force
+                | Subject::All
         )
     }
 }

@@ -5,9 +5,11 @@ use std::io::BufReader;
 use std::path::{Path, PathBuf};
 
 use crate::analysis::{Container, highest_surface, lowest_surface};
+use crate::dynamics::TurningGround;
 use crate::output::{Frame, XyzError, XyzReader};
 use crate::particle::{Mode, Particle, Vector};
 use crate::program::error::ProgramError;
+use crate::scenario::{Turns, read as read_scenario};
 use crate::time::Time;
 
 /// All grains at an instant, and the box.
@@ -64,6 +66,20 @@ pub(super) fn extent<const D: usize>(samples: &[Sample<D>], axis: usize) -> Opti
         .reduce(|one, other| (one.0.min(other.0), one.1.max(other.1)))
 }
 
+/// The ground of the run that a folder holds, if it turns.
+pub(super) fn turning_ground<const D: usize>(
+    run: &Path,
+) -> Result<Option<TurningGround<D>>, ProgramError> {
+    let file = run.join("scenario.toml");
+    if !file.is_file() {
+        return Ok(None);
+    }
+    let (_, scenario) = read_scenario(&file, Vec::new())?;
+    let turns = scenario.rotation.filter(|turns| turns.of == Turns::Ground);
+    let nothing = Vector::zeros();
+    Ok(turns.map(|turns| TurningGround::new(nothing, turns.angular_velocity, [0, D - 1], nothing)))
+}
+
 /// The file of frames of a run, and where what is made of them goes.
 pub(super) fn paths(run: &Path, out: Option<&PathBuf>) -> Result<(PathBuf, PathBuf), ProgramError> {
     let refuse = |reason: &str| {
@@ -92,14 +108,15 @@ pub(super) fn paths(run: &Path, out: Option<&PathBuf>) -> Result<(PathBuf, PathB
     Ok((run.to_path_buf(), out))
 }
 
-/// Reads the frames between two times, and the number of all.
+/// Reads the frames between two times; says how many there are in all, and the
+/// latest time.
 pub(super) fn read(
     file: &Path,
     (from, to): (f64, f64),
-) -> Result<(Vec<Frame>, usize), ProgramError> {
+) -> Result<(Vec<Frame>, usize, Time), ProgramError> {
     let name = file.display().to_string();
     let opened = File::open(file).map_err(ProgramError::io(name.clone()))?;
-    let (mut kept, mut count) = (Vec::new(), 0);
+    let (mut kept, mut count, mut end) = (Vec::new(), 0, Time::ZERO);
     for frame in XyzReader::new(BufReader::new(opened)) {
         let frame = frame.map_err(|source| match source {
             XyzError::Io(source) => ProgramError::Io {
@@ -112,9 +129,10 @@ pub(super) fn read(
             },
         })?;
         count += 1;
+        end = end.max(frame.time);
         if (from..=to).contains(&frame.time.units()) {
             kept.push(frame);
         }
     }
-    Ok((kept, count))
+    Ok((kept, count, end))
 }

@@ -1,18 +1,20 @@
 //! How grains move: velocity, temperature, displacement.
 
 use crate::analysis::{BinnedMotion, Paths, Probe, Profile, binned_motion};
-use crate::particle::Vector;
+use crate::model::Dynamics;
+use crate::particle::{Particle, Vector};
 use crate::plot::{Axis, Chart, Mark, Marker, Series, Stroke};
 use crate::program::analyse::Task;
 use crate::program::analyse::arguments::axis_name;
 use crate::program::analyse::finding::{Columns, Finding};
-use crate::program::analyse::frames::is_free;
+use crate::program::analyse::frames::{is_free, turning_ground};
 use crate::program::error::ProgramError;
 
 /// The bins, and what grains do in them in each sample.
 fn motion<const D: usize>(
     task: &Task<'_, D>,
 ) -> Result<(Probe<D>, Vec<BinnedMotion<D>>), ProgramError> {
+    let turning = turning_ground::<D>(&task.options.run)?;
     let axis = task.axis()?;
     let mut probe = Probe::new(axis, task.bins(axis, 1.0)?)?;
     for other in 0..D {
@@ -23,7 +25,13 @@ fn motion<const D: usize>(
     let frames: Vec<BinnedMotion<D>> = task
         .samples
         .iter()
-        .map(|sample| binned_motion(&sample.grains, &probe, |_| Vector::zeros(), is_free))
+        .map(|sample| {
+            let ground = |grain: &Particle<D>| match &turning {
+                Some(turning) => turning.ground_velocity(&grain.position, sample.time),
+                None => Vector::zeros(),
+            };
+            binned_motion(&sample.grains, &probe, ground, is_free)
+        })
         .collect();
     if frames
         .iter()

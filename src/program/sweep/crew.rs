@@ -19,29 +19,41 @@ use crate::program::run::Run;
 use crate::program::signals::Signals;
 use crate::program::sweep::error::SweepError;
 use crate::program::sweep::outcome::Outcome;
-use crate::program::sweep::plan::Plan;
+use crate::scenario::{Origin, Scenario};
 
 /// How often somebody looks how the runs are getting on.
 const LOOK_EVERY: Duration = Duration::from_millis(200);
 /// What the main thread of a process has, too.
 const STACK: usize = 8 << 20;
 
-/// Who carries out the runs of a sweep.
-pub(super) struct Crew<'a> {
-    pub(super) plan: &'a Plan,
-    /// Of the sweep.
-    pub(super) folder: &'a Path,
-    pub(super) threads: usize,
-    pub(super) checkpoint_every: Option<f64>,
-    pub(super) signals: &'a Signals,
-    pub(super) program: &'a Program,
+/// Runs that are to be carried out.
+pub(in crate::program) trait Tasks: Sync {
+    /// How many.
+    fn runs(&self) -> usize;
+
+    /// The name of the folder of one.
+    fn folder_of(&self, run: usize) -> String;
+
+    /// What one is to do.
+    fn scenario_of(&self, run: usize) -> Result<(Origin, Scenario), ProgramError>;
 }
 
-impl Crew<'_> {
+/// Who carries them out.
+pub(in crate::program) struct Crew<'a, T> {
+    pub(in crate::program) plan: &'a T,
+    /// Where their folders stand.
+    pub(in crate::program) folder: &'a Path,
+    pub(in crate::program) threads: usize,
+    pub(in crate::program) checkpoint_every: Option<f64>,
+    pub(in crate::program) signals: &'a Signals,
+    pub(in crate::program) program: &'a Program,
+}
+
+impl<T: Tasks> Crew<'_, T> {
     /// Takes one run after the other until none is left or a signal has come.
     /// Calls `look` with those that have ended and with how the others are
     /// getting on, now and then.
-    pub(super) fn work(
+    pub(in crate::program) fn work(
         &self,
         mut look: impl FnMut(Vec<(usize, Outcome)>, &[Arc<Gauge>]),
     ) -> Result<(), ProgramError> {

@@ -17,7 +17,7 @@ const MOST_NAMED: usize = 10;
 
 /// What is known of a run.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub(super) struct Outcome {
+pub(in crate::program) struct Outcome {
     summary: Option<Summary>,
     /// Why it could not be carried on with: the exit code and a message.
     failure: Option<(u8, String)>,
@@ -25,12 +25,17 @@ pub(super) struct Outcome {
 
 impl Outcome {
     /// What a run has left in its folder.
-    pub(super) fn read(folder: &Path) -> Self {
+    pub(in crate::program) fn read(folder: &Path) -> Self {
         let text = fs::read_to_string(folder.join("summary.json"));
         Outcome {
             summary: text.ok().and_then(|text| serde_json::from_str(&text).ok()),
             failure: None,
         }
+    }
+
+    /// Its summary, if it has one.
+    pub(in crate::program) fn summary(&self) -> Option<&Summary> {
+        self.summary.as_ref()
     }
 
     /// What is known after an attempt to carry it out.
@@ -42,7 +47,7 @@ impl Outcome {
     }
 
     /// Whether it has come to an end of its own.
-    pub(super) fn is_finished(&self) -> bool {
+    pub(in crate::program) fn is_finished(&self) -> bool {
         self.failure.is_none()
             && self
                 .summary
@@ -56,7 +61,7 @@ impl Outcome {
     }
 
     /// Whether it stopped early, for a reason of its own.
-    pub(super) fn is_failed(&self) -> bool {
+    pub(in crate::program) fn is_failed(&self) -> bool {
         matches!(self.ended(), "collapse" | "error")
     }
 

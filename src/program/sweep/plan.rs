@@ -14,6 +14,7 @@ use crate::program::load::open;
 use crate::program::run::{seed_is, until};
 use crate::program::show::check_grains;
 use crate::program::sweep::MOST_RUNS;
+use crate::program::sweep::crew::Tasks;
 use crate::program::sweep::error::SweepError;
 use crate::program::sweep::names::{names_of, plain, shortened, unique};
 use crate::program::sweep::values::Variation;
@@ -275,4 +276,18 @@ fn count(variations: &[Variation], seeds: u64) -> Result<usize, SweepError> {
         });
     }
     Ok(combinations as usize)
+}
+
+impl Tasks for Plan {
+    fn runs(&self) -> usize {
+        Plan::runs(self)
+    }
+
+    fn folder_of(&self, run: usize) -> String {
+        Plan::folder_of(self, run)
+    }
+
+    fn scenario_of(&self, run: usize) -> Result<(Origin, Scenario), ProgramError> {
+        Plan::scenario_of(self, run)
+    }
 }
