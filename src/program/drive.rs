@@ -1,6 +1,7 @@
 //! Carries a run through: slice by slice, with samples, signals and a summary.
 
 mod audits;
+mod dropper;
 mod files;
 mod pace;
 mod replay;
@@ -10,17 +11,14 @@ mod state;
 use std::sync::Arc;
 use std::time::Instant;
 
-use rand_chacha::ChaCha8Rng;
-
-use crate::analysis;
 use crate::boundary::Cuboid;
 use crate::engine::{Limits, Simulation, StopReason};
 use crate::error::SetupError;
 use crate::model::{Model, Observer, Occurrence, Surroundings};
 use crate::observe::TrajectoryHash;
 use crate::output::{Checkpoint, CollapseReport, RunFolder, StoppedBy};
-use crate::particle::Particle;
 use crate::program::drive::audits::Audits;
+use crate::program::drive::dropper::Dropper;
 use crate::program::drive::files::{Files, Log};
 use crate::program::drive::pace::{Cadence, Pace, Samples};
 use crate::program::drive::replay::Diary;
@@ -32,7 +30,6 @@ use crate::program::progress::{Gauge, Progress};
 use crate::program::show::say;
 use crate::program::signals::Signals;
 use crate::scenario::{Origin, Scenario, Start};
-use crate::setup::OneByOne;
 use crate::time::Time;
 
 pub(super) use files::{begin, scenario_text};
@@ -100,45 +97,6 @@ impl<const D: usize> Observer<D> for Watch {
         if let Some(diary) = &mut self.diary {
             diary.observe(occurrence, after);
         }
-    }
-}
-
-/// Grains still to be dropped, one by one.
-struct Dropper<const D: usize> {
-    source: OneByOne<D>,
-    random: ChaCha8Rng,
-    dropped: usize,
-    count: usize,
-}
-
-impl<const D: usize> Dropper<D> {
-    fn new(scenario: &Scenario) -> Option<Self> {
-        let (source, random) = scenario.dropper()?;
-        Some(Dropper {
-            source,
-            random,
-            dropped: 0,
-            count: scenario.one_by_one().map_or(0, |drops| drops.count),
-        })
-    }
-
-    fn has_more(&self) -> bool {
-        self.dropped < self.count
-    }
-
-    /// Drops the next grain; one that can't be dropped leaves everything as it was.
-    fn drop_into<M: Model<D>>(
-        &mut self,
-        simulation: &mut Simulation<M, D>,
-    ) -> Result<Particle<D>, SetupError> {
-        let heap = simulation.snapshot();
-        let top = analysis::highest_surface(&heap).unwrap_or(0.0);
-        let mut random = self.random.clone();
-        let grain = self.source.grain(top, &mut random)?;
-        simulation.insert(grain)?;
-        self.random = random;
-        self.dropped += 1;
-        Ok(grain)
     }
 }
 
