@@ -65,7 +65,7 @@ fn an_interrupted_run_goes_on_with_it() {
     let (_, whole) = run(place.path(), "whole", &[]);
     let (_, part) = run(place.path(), "part", &["--set", "stop.events=2000"]);
     assert_ne!(part["trajectory_hash"], whole["trajectory_hash"]);
-    // Killed after a checkpoint: its last files are those of a run under way.
+    // Killed after its second checkpoint, of which the first holds nothing yet.
     let killed = place.path().join("killed");
     let scenario = concat!(env!("CARGO_MANIFEST_DIR"), "/tired.toml");
     let mut child = Command::new(env!("CARGO_BIN_EXE_own-criterion"))
@@ -81,7 +81,7 @@ fn an_interrupted_run_goes_on_with_it() {
         ])
         .spawn()
         .unwrap();
-    while !killed.join("checkpoint").exists() {
+    while !killed.join("checkpoint.previous").exists() {
         std::thread::yield_now();
     }
     child.kill().unwrap();
