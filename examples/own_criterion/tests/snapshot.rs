@@ -124,10 +124,12 @@ fn it_is_compared_and_explained() {
         "{said}"
     );
 
-    run(place.path(), "space", &[]);
+    let (_, summary) = run(place.path(), "space", &[]);
+    let last = summary["particles"]["total"].as_u64().unwrap() - 1;
+    let last = last.to_string();
     let asked = program(
         place.path(),
-        &["why", "space", "--particle", "25", "--json"],
+        &["why", "space", "--particle", &last, "--json"],
     );
     let answer: Value = serde_json::from_slice(&asked.stdout).unwrap();
     assert_eq!(answer["mode"], "frozen");
