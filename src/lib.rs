@@ -104,6 +104,10 @@ mod book {
     struct GettingStarted;
     #[doc = include_str!("../book/src/model.md")]
     struct TheModel;
+    #[doc = include_str!("../book/src/drum.md")]
+    struct Drum;
+    #[doc = include_str!("../book/src/own-criterion.md")]
+    struct OwnCriterion;
     #[doc = include_str!("../book/src/prediction.md")]
     struct Prediction;
     #[doc = include_str!("../book/src/refusals.md")]

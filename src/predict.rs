@@ -90,6 +90,11 @@ impl<const D: usize, F: PolynomialFlight<D>> Predictor<D, F> for Polynomial {
     }
 
     #[inline]
+    fn not_back_before(&self, own: &F, place: &Vector<D>) -> f64 {
+        screen::not_back_before(own, place)
+    }
+
+    #[inline]
     fn frame(&self, flight: &F) -> Option<Vector<D>> {
         Some(if F::ACCELERATES {
             flight.acceleration()

@@ -6,6 +6,7 @@
 mod analyse;
 mod bench;
 mod cli;
+mod criteria;
 mod draw;
 mod drive;
 mod error;
@@ -23,6 +24,7 @@ mod sweep;
 mod table;
 mod validate;
 
+pub use criteria::Program;
 pub use error::ProgramError;
 pub use sweep::SweepError;
 
@@ -36,17 +38,22 @@ use crate::program::cli::{Cli, Command};
 /// Runs the program with the arguments of this process, and says how it went.
 #[must_use]
 pub fn main() -> ExitCode {
+    Program::new().main()
+}
+
+fn run_command(program: &Program) -> ExitCode {
     let done = match Cli::parse().command {
-        Command::Run(arguments) => run::run(&arguments),
-        Command::Resume(arguments) => resume::resume(&arguments),
-        Command::Sweep(arguments) => sweep::sweep(&arguments),
+        Command::Run(arguments) => run::run(&arguments, program),
+        Command::Resume(arguments) => resume::resume(&arguments, program),
+        Command::Sweep(arguments) => sweep::sweep(&arguments, program),
+        Command::Criteria => show::criteria(program),
         Command::Presets => show::presets(),
         Command::Preset { name } => show::preset(&name),
-        Command::Check(arguments) => show::check(&arguments),
+        Command::Check(arguments) => show::check(&arguments, program),
         Command::Schema => show::schema(),
         Command::Draw(arguments) => draw::draw(&arguments),
         Command::Analyse(arguments) => analyse::analyse(&arguments),
-        Command::Reproduce(arguments) => reproduce::reproduce(&arguments),
+        Command::Reproduce(arguments) => reproduce::reproduce(&arguments, program),
         Command::Validate(arguments) => validate::validate(&arguments),
         Command::Bench(arguments) => bench::bench(&arguments),
     };

@@ -24,6 +24,7 @@
 //! ```
 
 mod build;
+mod criteria;
 mod error;
 mod path;
 mod place;
@@ -36,15 +37,16 @@ mod tree;
 mod validate;
 
 pub use build::{Drumming, FloatingModel, GravityModel, Start, TurningModel};
+pub use criteria::{KnownCriterion, built_in_criteria};
 pub use error::{Problem, Refusal, ScenarioError};
 pub use path::{Path, Segment};
 pub use place::{Line, Place};
 pub use presets::{Preset, presets};
 pub use read::{Format, Origin, read, read_text};
 pub use schema::{
-    Base, Dimension, DimensionError, Drum, Gas, Gravity, Guards, OneByOne, Output, Parameters,
-    Phase, Rain, Rotation, Scenario, SelfCheck, Side, Sleep, Source, SourceKind, Stop, Threshold,
-    Turns,
+    Base, Criteria, Dimension, DimensionError, Drum, Gas, Gravity, Guards, OneByOne, Output,
+    Parameters, Phase, Rain, Rotation, Scenario, SelfCheck, Side, Sleep, Source, SourceKind, Stop,
+    Threshold, Turns,
 };
 pub use set::Assignment;
 pub use suggest::nearest;

@@ -102,7 +102,8 @@ impl Time {
     #[must_use]
     #[inline]
     pub fn is_finite(self) -> bool {
-        self != Time::NEVER
+        // No other instant has so many ticks.
+        self.ticks != i64::MAX
     }
 
     /// The two words of the fixed-point number, for hashing.
@@ -158,7 +159,7 @@ impl std::ops::Add<f64> for Time {
         let sum = self.rest + after;
         let scaled = sum * TICKS_PER_UNIT;
         // Beyond this the count of ticks could not be added.
-        if scaled.is_nan() || scaled.abs() >= 9.0e18 || self == Time::NEVER {
+        if scaled.is_nan() || scaled.abs() >= 9.0e18 || !self.is_finite() {
             return Time::NEVER;
         }
         let mut whole = scaled as i64;
@@ -188,7 +189,7 @@ impl std::ops::Sub for Time {
     /// [`Time::NEVER`].
     #[inline]
     fn sub(self, earlier: Time) -> f64 {
-        if self == Time::NEVER {
+        if !self.is_finite() {
             return f64::INFINITY;
         }
         let ticks = match self.ticks.checked_sub(earlier.ticks) {

@@ -45,6 +45,26 @@ impl<const D: usize> Flight<D> for Straight<D> {
     }
 
     #[inline]
+    fn stays_within(&self, place: &Vector<D>, distance: f64) -> Option<f64> {
+        let from = self.position - place;
+        let left = distance * distance - from.norm_squared();
+        let outward = from.dot(&self.velocity);
+        let squared = self.velocity.norm_squared();
+        // Also if any of it is NaN.
+        let inside = left > 0.0;
+        if !inside {
+            return Some(0.0);
+        }
+        let root = (outward * outward + squared * left).sqrt();
+        let time = if outward > 0.0 {
+            left / (root + outward)
+        } else {
+            (root - outward) / squared
+        };
+        Some(time * (1.0 - 1.0e-12))
+    }
+
+    #[inline]
     fn is_at_rest(&self) -> bool {
         self.velocity == Vector::<D>::zeros()
     }

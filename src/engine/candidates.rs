@@ -3,10 +3,11 @@
 //! Bounds decide who is asked, never what is answered.
 
 use crate::engine::body::{LONG_AGO, World, flight_of, is_known, scale_at};
-use crate::engine::cells::{Found, Link};
+use crate::engine::cells::Link;
 use crate::engine::search::shift;
 use crate::engine::simulation::Simulation;
 use crate::model::{Crowd, Dynamics, Flight, LANES, Model, Nook, Predictor};
+use crate::time::Time;
 
 /// Somebody who may come first.
 #[derive(Clone, Copy, Debug)]
@@ -20,31 +21,51 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
     /// Notes the first contact with anybody on a grain's list, but for the one
     /// that has been asked, if it comes before what is known already: nearly all
     /// are told to come later by a bound, and the others are asked in the order
-    /// of their bounds.
-    pub(super) fn meet_listed(&mut self, particle: u32, asked: Option<Found<D>>) {
+    /// of their bounds. To somebody it does not come `back` before a time.
+    pub(super) fn meet_listed(
+        &mut self,
+        particle: u32,
+        mut asked: Option<Link<D>>,
+        mut back: Option<(Link<D>, f64)>,
+    ) {
         if !self.world.is_current() && self.epoch_is_over() {
             self.begin_epoch();
         }
         let mut near = std::mem::take(&mut self.candidates);
-        self.find_candidates(particle, &mut near);
         let now = self.world.clock;
-        while !near.is_empty() {
-            let (mut bound, mut place) = (near[0].bound, 0);
-            for (other, candidate) in near.iter().enumerate().skip(1) {
-                if candidate.bound < bound {
-                    (bound, place) = (candidate.bound, other);
+        let known = self.slots[particle as usize].contact;
+        // It is likely to be back not much later than it can be, and bounds are
+        // the better the shorter they have to look ahead.
+        let mut until = back.map_or(known, |(_, bound)| known.min(now + 2.0 * bound));
+        loop {
+            self.find_candidates(particle, until, back, &mut near);
+            while !near.is_empty() {
+                let (mut bound, mut place) = (near[0].bound, 0);
+                for (other, candidate) in near.iter().enumerate().skip(1) {
+                    if candidate.bound < bound {
+                        (bound, place) = (candidate.bound, other);
+                    }
+                }
+                if bound > self.slots[particle as usize].contact - now {
+                    break;
+                }
+                let Candidate { link, .. } = near.swap_remove(place);
+                if asked != Some(link) {
+                    let found = self.world.near.found(particle, link);
+                    self.meet(particle, &found);
                 }
             }
-            if bound > self.slots[particle as usize].contact - now {
+            near.clear();
+            let contact = self.slots[particle as usize].contact;
+            if contact <= until {
                 break;
             }
-            let Candidate { link, .. } = near.swap_remove(place);
-            let found = self.world.near.found(particle, link);
-            if asked != Some(found) {
-                self.meet(particle, &found);
+            // Nobody comes as soon as that.
+            if let Some((link, _)) = back.take() {
+                asked = Some(link);
             }
+            until = contact;
         }
-        near.clear();
         self.candidates = near;
     }
 
@@ -58,12 +79,19 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
 
     /// Everybody on a grain's list who may meet it before its known contact, and
     /// a time before which they certainly do not, counted from now.
-    fn find_candidates(&mut self, particle: u32, candidates: &mut Vec<Candidate<D>>) {
+    fn find_candidates(
+        &mut self,
+        particle: u32,
+        until: Time,
+        back: Option<(Link<D>, f64)>,
+        candidates: &mut Vec<Candidate<D>>,
+    ) {
         self.world.near.make_bed(particle, &self.world.bodies);
         let (bed, movers) = self.world.near.bed(particle);
-        let horizon = self.slots[particle as usize].contact;
-        let onlooker = self.world.onlooker(particle, horizon);
-        if (bed.is_some() || onlooker.is_none()) && !self.find_slowly(particle, candidates) {
+        let onlooker = self.world.onlooker(particle, until);
+        if (bed.is_some() || onlooker.is_none())
+            && !self.find_slowly(particle, until, back, candidates)
+        {
             return;
         }
         let Some(onlooker) = onlooker else {
@@ -97,7 +125,13 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
     /// are told to by glances, for all others, too. False if nothing can be said
     /// of it, so that everybody has been noted.
     #[inline(never)]
-    fn find_slowly(&self, particle: u32, candidates: &mut Vec<Candidate<D>>) -> bool {
+    fn find_slowly(
+        &self,
+        particle: u32,
+        until: Time,
+        back: Option<(Link<D>, f64)>,
+        candidates: &mut Vec<Candidate<D>>,
+    ) -> bool {
         let model = &self.model;
         let World {
             bodies,
@@ -123,12 +157,17 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
             candidates.extend(all.map(|&link| Candidate { bound: 0.0, link }));
             return false;
         }
-        let horizon = self.slots[particle as usize].contact - now;
+        let horizon = until - now;
         let place = own.start() - near.anchor(particle);
         let (bed, movers) = near.bed(particle);
         let slots = &self.slots;
         let mut add = |answers: [f64; LANES], few: &[Link<D>]| {
-            for (bound, link) in answers.into_iter().zip(few) {
+            for (mut bound, link) in answers.into_iter().zip(few) {
+                if let Some((left, time)) = back
+                    && left == *link
+                {
+                    bound = time;
+                }
                 // NaN says nothing, so it is not later than anything.
                 if bound == f64::INFINITY || bound > horizon {
                     continue;

@@ -72,7 +72,7 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
         if guards.collapse.is_some_and(|limit| run >= limit) && self.collapse.is_none() {
             self.collapse = Some(self.name_collapse(particle, run));
         }
-        let sleeps = M::StatePolicy::SLEEPS;
+        let sleeps = self.model.state_policy().sleeps();
         if sleeps && guards.cascade.is_some() && self.is_caught(particle) {
             self.counts.guard += 1;
             return Relief {

@@ -144,7 +144,7 @@ impl<const D: usize> World<D> {
     }
 
     /// A grain that is to look at others; nothing if it can't from afar.
-    #[inline]
+    #[inline(always)]
     pub(super) fn onlooker(&self, particle: u32, horizon: Time) -> Option<Onlooker<D>> {
         let own = &self.glances.all[particle as usize];
         let passed = self.clock - self.glances.epoch;

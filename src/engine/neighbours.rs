@@ -28,7 +28,7 @@ const SHORT_LEASH: f64 = 0.2;
 /// Length of the longest, for grains with hardly a neighbour.
 const LONG_LEASH: f64 = 0.5;
 /// How many neighbours a list should hold on average.
-const WANTED: f64 = 9.0;
+const WANTED: f64 = 12.0;
 /// A grain whose long leash gives it more neighbours than this gets the short
 /// one.
 const MANY: usize = 16;
@@ -124,10 +124,9 @@ impl<const D: usize> Neighbours<D> {
     }
 
     /// Somebody on the list of a grain.
-    pub(super) fn listed(&self, particle: u32, other: u32) -> Option<Found<D>> {
+    pub(super) fn listed(&self, particle: u32, other: u32) -> Option<Link<D>> {
         let mut list = self.ties[particle as usize].list.iter();
-        let link = list.find(|link| link.particle() == other)?;
-        Some(self.cells.found(particle, *link))
+        list.find(|link| link.particle() == other).copied()
     }
 
     /// The same, as it is kept.
@@ -189,6 +188,12 @@ impl<const D: usize> Neighbours<D> {
         self.ties[particle as usize].leash > 0.0
     }
 
+    /// How far from its anchor a grain may go, in d.
+    #[inline]
+    pub(super) fn leash(&self, particle: u32) -> f64 {
+        ROUND * self.ties[particle as usize].leash
+    }
+
     /// How far a grain may still move from `position`, in d; negative if too
     /// far already.
     pub(super) fn slack(&self, particle: u32, position: &Vector<D>) -> f64 {
@@ -238,11 +243,11 @@ impl<const D: usize> Neighbours<D> {
             break;
         }
         let mut old = std::mem::take(&mut self.ties[particle as usize].list);
-        for link in old.iter().filter(|link| !list.contains(link)) {
+        for link in old.iter().filter(|link| !link.is_in(&list)) {
             let tie = &mut self.ties[link.particle() as usize];
             tie.forget(link.seen_from(particle));
         }
-        for link in list.iter().filter(|link| !old.contains(link)) {
+        for link in list.iter().filter(|link| !link.is_in(&old)) {
             let tie = &mut self.ties[link.particle() as usize];
             if tie.leash > 0.0 {
                 tie.list.push(link.seen_from(particle));

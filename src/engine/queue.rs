@@ -142,6 +142,7 @@ impl EventQueue {
         self.file(particle);
     }
 
+    /// How many slots there are: a power of two.
     fn slots(&self) -> i64 {
         self.heads.len() as i64 - 1
     }
@@ -166,7 +167,7 @@ impl EventQueue {
         }
         let list = if slot - self.current < self.slots() {
             self.filed += 1;
-            (slot % self.slots()) as usize + 1
+            (slot & (self.slots() - 1)) as usize + 1
         } else {
             BEYOND
         };
@@ -222,7 +223,7 @@ impl EventQueue {
             return true;
         }
         self.current += 1;
-        if self.current % self.slots() == 0 {
+        if self.current & (self.slots() - 1) == 0 {
             let per_slot = self.served as f64 / self.slots() as f64;
             self.served = 0;
             let width = if per_slot > 3.0 {
@@ -235,7 +236,7 @@ impl EventQueue {
             self.rebuild(width);
             return true;
         }
-        let list = (self.current % self.slots()) as usize + 1;
+        let list = (self.current & (self.slots() - 1)) as usize + 1;
         let mut particle = std::mem::replace(&mut self.heads[list], NOWHERE);
         while particle != NOWHERE {
             let following = self.next[particle as usize];

@@ -13,7 +13,8 @@
 //! events, and the one with the smaller id comes first.
 
 use crate::engine::body::scale_at;
-use crate::engine::cells::Found;
+use crate::engine::cells::{Found, Link};
+use crate::engine::neighbours::Neighbours;
 use crate::engine::simulation::Simulation;
 use crate::engine::slot::{Partner, contact_key};
 use crate::model::{Approach, Boundary, Dynamics, Encounter, Flight, Forecast, Model, Predictor};
@@ -46,23 +47,45 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
         if self.world.bodies[particle as usize].mode.is_static() {
             self.tell_neighbours(particle);
         } else {
-            // The grain just left comes first: it is often the next, and a
-            // near contact spares work on all others. Where the two see each other
-            // move uniformly they part for ever, and a glance will do.
-            let mut left = None;
+            // The grain just left is often the next, and a near contact spares
+            // work on all others. Where the two see each other move uniformly they
+            // part for ever, and a glance will do.
+            let (mut asked, mut back) = (None, None);
             if let Partner::Particle(last) = self.traces[particle as usize].partner
                 && !self.world.see_each_other(particle, last)
+                && let Some(link) = self.world.near.listed(particle, last)
             {
-                left = self.world.near.listed(particle, last);
-            }
-            if let Some(other) = &left {
-                self.meet(particle, other);
+                let bound = self.not_back_before(particle, link);
+                if bound > 0.0 {
+                    back = Some((link, bound));
+                } else {
+                    let found = self.world.near.found(particle, link);
+                    self.meet(particle, &found);
+                    asked = Some(link);
+                }
             }
             self.meet_walls(particle);
-            self.meet_listed(particle, left);
+            self.meet_listed(particle, asked, back);
         }
         self.find_renewal(particle);
         self.enqueue(particle);
+    }
+
+    /// A time, from now, before which a grain certainly does not come back to the
+    /// one it has left, if that is at rest and it has done so just now.
+    #[inline]
+    fn not_back_before(&self, particle: u32, link: Link<D>) -> f64 {
+        let (own, other) = (
+            &self.world.bodies[particle as usize],
+            &self.world.bodies[link.particle() as usize],
+        );
+        if M::Dynamics::GROWS || !other.still || own.since != self.world.clock {
+            return 0.0;
+        }
+        let found = self.world.near.found(particle, link);
+        let place = other.position - own.position + shift(&self.model, found.turns, 1);
+        let flight = self.world.flight(&self.model, particle);
+        self.model.predictor().not_back_before(&flight, &place)
     }
 
     pub(super) fn enqueue(&mut self, particle: u32) {
@@ -277,7 +300,9 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
         }
     }
 
-    /// Finds until when a grain is certain to stay within its leash.
+    /// Finds until when a grain is certain to stay within its leash; never, if
+    /// something comes first after which it is found again.
+    #[inline]
     pub(super) fn find_renewal(&mut self, particle: u32) {
         let flight = self.world.flight(&self.model, particle);
         let slot = &mut self.slots[particle as usize];
@@ -287,38 +312,58 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
         }
         let now = self.world.clock;
         let known = slot.bound() - now;
-        let near = &self.world.near;
         let flight = flight.advanced(now - self.world.bodies[particle as usize].since);
-        let mut slack = near.slack(particle, &flight.start()).max(0.0);
-        // From a time on it goes no farther within another than its top speed up
-        // to the end of both times that other.
-        let step = |from: f64, slack: f64| {
-            let safe = |window: f64| f64::min(window, slack / flight.speed_bound(from + window));
-            let mut certain = safe(1.0);
-            let mut longer = safe(2.0 * certain);
-            // A slow grain needs looking after no more often than a fast one
-            // needs in the time it takes to go as far.
-            while longer > certain && certain >= 1.0 {
-                certain = longer;
-                longer = safe(2.0 * certain);
-            }
-            certain.max(longer)
+        let near = &self.world.near;
+        let anchor = near.anchor(particle);
+        let certain = match flight.stays_within(&anchor, near.leash(particle)) {
+            Some(certain) => certain,
+            None => stepped(near, particle, &flight, known),
         };
-        let mut certain = step(0.0, slack);
-        // An event of its own comes first, or it has to be tied anew then, or
-        // that is very long.
-        for _ in 0..MOST_STEPS {
-            if certain > known {
-                break;
-            }
-            slack = near.slack(particle, &flight.position(certain));
-            if near.is_stretched(particle, slack) {
-                break;
-            }
-            certain += step(certain, slack);
+        if certain <= known {
+            slot.renewal = now + certain;
         }
-        slot.renewal = self.world.clock + certain;
     }
+}
+
+/// The same in steps of at most the top speed.
+fn stepped<F: Flight<D>, const D: usize>(
+    near: &Neighbours<D>,
+    particle: u32,
+    flight: &F,
+    known: f64,
+) -> f64 {
+    let mut slack = near.slack(particle, &flight.start()).max(0.0);
+    if slack > flight.speed_bound(known) * known {
+        return f64::INFINITY;
+    }
+    // From a time on it goes no farther within another than its top speed up
+    // to the end of both times that other.
+    let step = |from: f64, slack: f64| {
+        let safe = |window: f64| f64::min(window, slack / flight.speed_bound(from + window));
+        let mut certain = safe(1.0);
+        let mut longer = safe(2.0 * certain);
+        // A slow grain needs looking after no more often than a fast one
+        // needs in the time it takes to go as far.
+        while longer > certain && certain >= 1.0 {
+            certain = longer;
+            longer = safe(2.0 * certain);
+        }
+        certain.max(longer)
+    };
+    let mut certain = step(0.0, slack);
+    // An event of its own comes first, or it has to be tied anew then, or
+    // that is very long.
+    for _ in 0..MOST_STEPS {
+        if certain > known {
+            break;
+        }
+        slack = near.slack(particle, &flight.position(certain));
+        if near.is_stretched(particle, slack) {
+            break;
+        }
+        certain += step(certain, slack);
+    }
+    certain
 }
 
 /// The vector of `turns` periods, in d.

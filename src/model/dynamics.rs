@@ -44,6 +44,13 @@ pub trait Flight<const D: usize>: Copy {
     /// A bound on the speed during the first `within`, in √(gd).
     fn speed_bound(&self, within: f64) -> f64;
 
+    /// How long it certainly stays within a distance of a place, both in d, from
+    /// its start on; `None`, which is provided, if that is best told from
+    /// [`speed_bound`](Flight::speed_bound).
+    fn stays_within(&self, _place: &Vector<D>, _distance: f64) -> Option<f64> {
+        None
+    }
+
     /// True if the grain does not move at all: the engine then need not follow
     /// it.
     fn is_at_rest(&self) -> bool;

@@ -179,6 +179,11 @@ pub trait StatePolicy<const D: usize> {
     /// [`should_sleep`](StatePolicy::should_sleep) says.
     const SLEEPS: bool = true;
 
+    /// The same for a policy that knows it only by its parameters.
+    fn sleeps(&self) -> bool {
+        Self::SLEEPS
+    }
+
     /// Does the grain of `impact`, which leaves with velocity `after`, fall
     /// asleep? Asked once for each mobile grain at each of its collisions of
     /// any kind, after the rule and before anything is written; so it is also

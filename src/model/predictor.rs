@@ -162,6 +162,14 @@ pub trait Predictor<const D: usize, F: Flight<D>> {
         })
     }
 
+    /// A time before which a grain that has just collided with one at rest
+    /// certainly does not come back to it. Zero, which is provided, is always
+    /// right. `own` is its flight from the collision on; `place`, in d, the
+    /// centre of the other as seen from its own, then.
+    fn not_back_before(&self, _own: &F, _place: &Vector<D>) -> f64 {
+        0.0
+    }
+
     /// The acceleration, in g, of a frame in which this flight is uniform, at all
     /// times before and after its start, if there is one: any two flights of one
     /// frame then move uniformly as seen from each other, and the engine tells

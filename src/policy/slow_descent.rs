@@ -1,3 +1,9 @@
+//! The paper's criteria.
+
+mod readings;
+
+pub use readings::{Comparison, DescentRead, EnergyStore, SpeedRead, StoreAt, WakeRead};
+
 use serde::{Deserialize, Serialize};
 
 use crate::error::SetupError;
@@ -6,88 +12,9 @@ use crate::model::{
     WakeCause, WakeDecision, Waking,
 };
 use crate::particle::{Mode, ParticleId, Vector};
+use crate::policy::asleep::Asleep;
 use crate::policy::supports::{CheckDue, SelfCheck, Supports};
 use crate::time::Time;
-
-/// What becomes of the energy that a grain loses when it falls asleep, if it
-/// is woken soon.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(feature = "program", derive(schemars::JsonSchema))]
-#[serde(rename_all = "snake_case")]
-pub enum EnergyStore {
-    /// It is lost.
-    Off,
-    /// The grain gets its velocity back before the collision is resolved.
-    #[default]
-    VelocityBefore,
-    /// The grain gets the energy added after the collision.
-    EnergyAfter,
-}
-
-/// Which velocity is stored when a grain falls asleep.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(feature = "program", derive(schemars::JsonSchema))]
-#[serde(rename_all = "snake_case")]
-pub enum StoreAt {
-    /// The one at the instant it freezes.
-    #[default]
-    Freezing,
-    /// The one just after the collision that decided it.
-    Deciding,
-}
-
-/// Which speed the sleep test reads.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(feature = "program", derive(schemars::JsonSchema))]
-#[serde(rename_all = "snake_case")]
-pub enum SpeedRead {
-    /// The one with which the grain arrives.
-    #[default]
-    Arriving,
-    /// The one with which it leaves.
-    Leaving,
-}
-
-/// Which velocity has to point down.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(feature = "program", derive(schemars::JsonSchema))]
-#[serde(rename_all = "snake_case")]
-pub enum DescentRead {
-    /// The one with which the grain arrives. Read on the leaving one, a ball on
-    /// a floor never sleeps.
-    #[default]
-    Arriving,
-    /// The one with which it leaves.
-    Leaving,
-    /// Both.
-    Both,
-}
-
-/// With which earlier collision the speed is compared.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(feature = "program", derive(schemars::JsonSchema))]
-#[serde(rename_all = "snake_case")]
-pub enum Comparison {
-    /// The grain's previous one, with anything.
-    #[default]
-    AnyCollision,
-    /// Its previous one with a frozen or fixed grain or a supporting wall.
-    StaticCollisions,
-    /// None: being slow is enough.
-    None,
-}
-
-/// Which speed of a hit has to exceed V_wakeup.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[cfg_attr(feature = "program", derive(schemars::JsonSchema))]
-#[serde(rename_all = "snake_case")]
-pub enum WakeRead {
-    /// The closing speed along the normal.
-    #[default]
-    Normal,
-    /// The whole relative speed.
-    Relative,
-}
 
 /// The paper's criteria (section 2), and its self-check (section 4).
 ///
@@ -168,7 +95,7 @@ impl SlowDescent {
     }
 
     /// How long the energy of a sleeper is stored, in √(d/g).
-    fn store_time(&self, gravity: f64) -> f64 {
+    pub(crate) fn store_time(&self, gravity: f64) -> f64 {
         self.store_time
             .unwrap_or(2.0 * self.sleep_speed / ((1.0 - self.frozen_restitution) * gravity))
     }
@@ -211,14 +138,6 @@ const EQUAL_ENERGY: f64 = 1.0e-12;
 /// that are elastic, below V_c, are all equally fast, and wear nobody out.
 fn is_slower(speed: f64, before: f64) -> bool {
     0.5 * (before - speed) * (before + speed) > EQUAL_ENERGY
-}
-
-/// What a sleeper has lost, and when.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(bound = "")]
-struct Asleep<const D: usize> {
-    velocity: Vector<D>,
-    since: Time,
 }
 
 /// What [`SlowDescent`] remembers of a grain.
@@ -367,9 +286,8 @@ impl<const D: usize> StatePolicy<D> for SlowDescent {
         if let Some(check) = &self.self_check
             && near.particle(id).mode == Mode::Frozen
         {
-            memory.supports.record(check, self.wall_supports, id, near);
-            let wait = check.first_wait(id, near.time());
-            commands.schedule(id, wait, memory.supports.next_check());
+            let walls = self.wall_supports;
+            memory.supports.start(check, walls, id, near, commands);
         }
     }
 
@@ -392,9 +310,8 @@ impl<const D: usize> StatePolicy<D> for SlowDescent {
             memory.previous_speed = None;
         }
         if let Some(check) = &self.self_check {
-            memory.supports.record(check, self.wall_supports, id, near);
-            let wait = check.wait(near.time());
-            commands.schedule(id, wait, memory.supports.next_check());
+            let walls = self.wall_supports;
+            memory.supports.begin(check, walls, id, near, commands);
         }
     }
 
@@ -439,12 +356,9 @@ impl<const D: usize> StatePolicy<D> for SlowDescent {
         if grain.mode != Mode::Frozen || !memory.supports.is_current(event) {
             return Response::Ignore;
         }
-        match memory.supports.verify(check, self.wall_supports, id, near) {
-            Ok(()) => {
-                let wait = check.wait(near.time());
-                commands.schedule(id, wait, memory.supports.next_check());
-                Response::Keep
-            }
+        let walls = self.wall_supports;
+        match memory.supports.go_on(check, walls, id, near, commands) {
+            Ok(()) => Response::Keep,
             Err(reason) => {
                 let gravity = near.gravity();
                 let ground = grain.velocity;

@@ -6,12 +6,12 @@ use rand_chacha::ChaCha8Rng;
 use serde::{Deserialize, Serialize};
 
 use crate::error::SetupError;
-use crate::model::{Reason, Surroundings};
+use crate::model::{Commands, Reason, Surroundings};
 use crate::particle::{Mode, ParticleId};
 use crate::time::Time;
 
 /// A wall within this gap below a grain supports it, in d.
-const WALL_RANGE: f64 = 0.05;
+pub(super) const WALL_RANGE: f64 = 0.05;
 
 /// When grains check.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -80,7 +80,7 @@ impl SelfCheck {
     }
 
     /// How long until the first check of a grain that starts frozen.
-    pub(super) fn first_wait(&self, id: ParticleId, now: Time) -> f64 {
+    fn first_wait(&self, id: ParticleId, now: Time) -> f64 {
         match self.phase {
             Phase::Spread { seed } => {
                 let mut generator = ChaCha8Rng::seed_from_u64(seed);
@@ -92,7 +92,7 @@ impl SelfCheck {
     }
 
     /// How long until the next check.
-    pub(super) fn wait(&self, now: Time) -> f64 {
+    fn wait(&self, now: Time) -> f64 {
         match self.phase {
             Phase::Spread { .. } | Phase::Own => self.interval,
             Phase::Global => {
@@ -129,7 +129,7 @@ pub(super) struct Supports {
 }
 
 impl Supports {
-    pub(super) fn next_check(&self) -> CheckDue {
+    fn next_check(&self) -> CheckDue {
         CheckDue { sleep: self.sleep }
     }
 
@@ -146,7 +146,7 @@ impl Supports {
     }
 
     /// Notes who holds a grain up now.
-    pub(super) fn record<const D: usize, S: Surroundings<D>>(
+    fn record<const D: usize, S: Surroundings<D>>(
         &mut self,
         check: &SelfCheck,
         walls_count: bool,
@@ -173,8 +173,50 @@ impl Supports {
         }
     }
 
+    /// Notes who holds a grain up that starts frozen, and asks for its first
+    /// check.
+    pub(super) fn start<const D: usize, S: Surroundings<D>>(
+        &mut self,
+        check: &SelfCheck,
+        walls_count: bool,
+        id: ParticleId,
+        near: &S,
+        commands: &mut Commands<CheckDue>,
+    ) {
+        self.record(check, walls_count, id, near);
+        let wait = check.first_wait(id, near.time());
+        commands.schedule(id, wait, self.next_check());
+    }
+
+    /// The same for one that falls asleep now.
+    pub(super) fn begin<const D: usize, S: Surroundings<D>>(
+        &mut self,
+        check: &SelfCheck,
+        walls_count: bool,
+        id: ParticleId,
+        near: &S,
+        commands: &mut Commands<CheckDue>,
+    ) {
+        self.record(check, walls_count, id, near);
+        commands.schedule(id, check.wait(near.time()), self.next_check());
+    }
+
+    /// Checks, and asks for the next check if all is well.
+    pub(super) fn go_on<const D: usize, S: Surroundings<D>>(
+        &self,
+        check: &SelfCheck,
+        walls_count: bool,
+        id: ParticleId,
+        near: &S,
+        commands: &mut Commands<CheckDue>,
+    ) -> Result<(), Reason> {
+        self.verify(check, walls_count, id, near)?;
+        commands.schedule(id, check.wait(near.time()), self.next_check());
+        Ok(())
+    }
+
     /// Whether all of them still hold the grain up.
-    pub(super) fn verify<const D: usize, S: Surroundings<D>>(
+    fn verify<const D: usize, S: Surroundings<D>>(
         &self,
         check: &SelfCheck,
         walls_count: bool,

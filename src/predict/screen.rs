@@ -202,3 +202,38 @@ pub(super) fn not_before_resting<const D: usize, F: PolynomialFlight<D>>(
     };
     gaps.closed(F::ACCELERATES, nook.growth, nook.horizon)
 }
+
+/// Instead of a rounding of the few products in a return.
+const DOUBT: f64 = 1.0e-12;
+
+/// A lower bound of the time at which a grain comes back to one at rest that it
+/// has just left. The gap is t times 2 b + a t + c₃ t² + c₄ t³, and the last two
+/// terms are at least −t c₃²/(4 c₄) at all times.
+#[inline]
+pub(super) fn not_back_before<const D: usize, F: PolynomialFlight<D>>(
+    own: &F,
+    place: &Vector<D>,
+) -> f64 {
+    let velocity: Vector<D> = own.start_velocity();
+    let (far, fast) = (place.norm_squared(), velocity.norm_squared());
+    // |r| |v| ≤ (r² + v²)/2, but for units: what is small beside one of them is
+    // not certain.
+    let parting = -place.dot(&velocity) - DOUBT * (far * fast).sqrt();
+    let certain = parting > 0.0;
+    if !certain {
+        return 0.0;
+    }
+    if !F::ACCELERATES {
+        return f64::INFINITY;
+    }
+    let pull: Vector<D> = own.acceleration();
+    let (pulled, along) = (pull.norm_squared(), velocity.dot(&pull));
+    let bend = along * along / (pulled + TINY);
+    let size = fast + (far * pulled).sqrt() + bend;
+    let falling = place.dot(&pull) + bend - fast + DOUBT * size;
+    if falling > 0.0 {
+        2.0 * parting / falling * (1.0 - DOUBT)
+    } else {
+        f64::INFINITY
+    }
+}

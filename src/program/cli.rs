@@ -159,6 +159,8 @@ pub(super) enum Command {
     /// Say whether a scenario can be run, and run nothing
     #[command(after_help = "Example:\n  grainfall check mine.toml")]
     Check(CheckArguments),
+    /// List the sleep criteria that a scenario can name
+    Criteria,
     /// Print the JSON Schema of scenarios
     Schema,
     /// Draw the grains of a run as SVG

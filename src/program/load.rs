@@ -2,6 +2,7 @@
 
 use std::path::Path;
 
+use crate::program::criteria::Program;
 use crate::program::error::ProgramError;
 use crate::scenario::{Assignment, Origin, Preset, Scenario, nearest, presets, read_text};
 
@@ -13,8 +14,12 @@ pub(super) struct Loaded {
 }
 
 /// Reads a preset or a scenario file.
-pub(super) fn load(named: &str, assignments: Vec<Assignment>) -> Result<Loaded, ProgramError> {
-    let (name, mut origin) = open(named)?;
+pub(super) fn load(
+    named: &str,
+    assignments: Vec<Assignment>,
+    program: &Program,
+) -> Result<Loaded, ProgramError> {
+    let (name, mut origin) = open(named, program)?;
     origin.assignments = assignments;
     let scenario = read_text(&origin)?;
     Ok(Loaded {
@@ -25,7 +30,13 @@ pub(super) fn load(named: &str, assignments: Vec<Assignment>) -> Result<Loaded, 
 }
 
 /// The text of a preset or of a scenario file, and what it is called.
-pub(super) fn open(named: &str) -> Result<(String, Origin), ProgramError> {
+pub(super) fn open(named: &str, program: &Program) -> Result<(String, Origin), ProgramError> {
+    let (name, mut origin) = find(named)?;
+    origin.criteria = program.criteria();
+    Ok((name, origin))
+}
+
+fn find(named: &str) -> Result<(String, Origin), ProgramError> {
     if let Some(preset) = Preset::named(named) {
         return Ok((named.to_owned(), preset.origin()));
     }

@@ -21,6 +21,7 @@ use std::thread;
 use std::time::Instant;
 
 use crate::output::write_atomically;
+use crate::program::criteria::Program;
 use crate::program::error::ProgramError;
 use crate::program::progress::{bar, show_on, time_left};
 use crate::program::reproduce::arguments::Part;
@@ -34,6 +35,7 @@ use crate::scenario::Assignment;
 
 /// What a figure is made from.
 struct Context<'a> {
+    program: &'a Program,
     effort: Effort,
     finished: Finished<'a>,
 }
@@ -128,7 +130,10 @@ static SUBJECTS: [Subject; 11] = [
     },
 ];
 
-pub(super) fn reproduce(arguments: &ReproduceArguments) -> Result<u8, ProgramError> {
+pub(super) fn reproduce(
+    arguments: &ReproduceArguments,
+    program: &Program,
+) -> Result<u8, ProgramError> {
     let effort = if arguments.quick {
         Effort::quick(arguments.seeds)
     } else {
@@ -143,7 +148,7 @@ pub(super) fn reproduce(arguments: &ReproduceArguments) -> Result<u8, ProgramErr
     fs::create_dir_all(&runs).map_err(ProgramError::io(runs.display().to_string()))?;
     let signals = Signals::listen().map_err(ProgramError::io("signals"))?;
     signals.begin();
-    let mut list = RunList::default();
+    let mut list = RunList::new(program);
     for subject in &chosen {
         for run in (subject.runs)(&effort) {
             list.add(run);
@@ -155,6 +160,7 @@ pub(super) fn reproduce(arguments: &ReproduceArguments) -> Result<u8, ProgramErr
         return Ok(code);
     }
     let context = Context {
+        program,
         effort,
         finished: Finished { folder: &runs },
     };
@@ -185,7 +191,7 @@ pub(super) fn reproduce(arguments: &ReproduceArguments) -> Result<u8, ProgramErr
 
 /// Carries out what is not finished yet, on all cores.
 fn carry_out(
-    list: &RunList,
+    list: &RunList<'_>,
     folder: &Path,
     arguments: &ReproduceArguments,
     signals: &Signals,
@@ -203,6 +209,7 @@ fn carry_out(
             .map_or(cores, |threads| usize::from(threads.get())),
         checkpoint_every: None,
         signals,
+        program: list.program(),
     };
     let progress = bar(arguments.quiet);
     let began = Instant::now();

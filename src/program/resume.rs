@@ -5,14 +5,14 @@ use std::io;
 
 use crate::output::{Checkpoint, CheckpointError, RunFolder, StoppedBy, Summary};
 use crate::program::cli::ResumeArguments;
-use crate::program::drive::{Attempt, Job, Options, go_on};
+use crate::program::criteria::{Program, Runner};
+use crate::program::drive::{Attempt, Job, Options};
 use crate::program::error::ProgramError;
-use crate::program::run::start;
 use crate::program::show::say;
 use crate::program::signals::Signals;
-use crate::scenario::{Dimension, Gravity, read};
+use crate::scenario::{Origin, ScenarioError, read_text};
 
-pub(super) fn resume(arguments: &ResumeArguments) -> Result<u8, ProgramError> {
+pub(super) fn resume(arguments: &ResumeArguments, program: &Program) -> Result<u8, ProgramError> {
     let options = Options {
         checkpoint_every: arguments.checkpoint_every,
         audit: arguments.audit,
@@ -22,7 +22,7 @@ pub(super) fn resume(arguments: &ResumeArguments) -> Result<u8, ProgramError> {
     let folder = RunFolder::open(&arguments.folder)?;
     let shown = folder.path().display().to_string();
     let signals = Signals::listen().map_err(ProgramError::io("signals"))?;
-    match continued(folder, options, &signals)? {
+    match continued(folder, options, &signals, program)? {
         Continued::Ended(code) => Ok(code),
         Continued::Finished(reason) => {
             if !arguments.quiet {
@@ -48,6 +48,7 @@ pub(super) fn continued(
     folder: RunFolder,
     options: Options,
     signals: &Signals,
+    program: &Program,
 ) -> Result<Continued, ProgramError> {
     let _lock = folder.lock()?;
     if let Some(reason) = finished(&folder) {
@@ -57,7 +58,9 @@ pub(super) fn continued(
         return Ok(Continued::Finished(reason));
     }
     let file = folder.file("scenario.toml");
-    let (origin, scenario) = read(&file, Vec::new())?;
+    let mut origin = Origin::open(&file)?;
+    origin.criteria = program.criteria();
+    let scenario = read_text(&origin).map_err(ScenarioError::from)?;
     let text = fs::read(&file).map_err(access(&folder, "scenario.toml"))?;
     let job = Job {
         origin,
@@ -66,15 +69,11 @@ pub(super) fn continued(
         text,
         options,
     };
-    let code = match job.scenario.dimension {
-        Dimension::Two => newest_good::<2>(&job, signals),
-        Dimension::Three => newest_good::<3>(&job, signals),
-    };
-    code.map(Continued::Ended)
+    newest_good(&job, program.runner(&job.scenario), signals).map(Continued::Ended)
 }
 
 /// Goes on from the newest checkpoint that is good.
-fn newest_good<const D: usize>(job: &Job, signals: &Signals) -> Result<u8, ProgramError> {
+fn newest_good(job: &Job, runner: &dyn Runner, signals: &Signals) -> Result<u8, ProgramError> {
     let mut reasons = String::new();
     for (name, found) in Checkpoint::all(&job.folder) {
         let shown = job.folder.file(name).display().to_string();
@@ -91,11 +90,12 @@ fn newest_good<const D: usize>(job: &Job, signals: &Signals) -> Result<u8, Progr
             }
             Ok(checkpoint) => {
                 let skipped = &reasons;
-                match attempt::<D>(job, &checkpoint.state, signals, skipped, &shown)? {
+                let beforehand = || prepare(job, skipped, &shown);
+                match runner.go_on(job, &checkpoint.state, signals, &beforehand)? {
                     Attempt::Done(code) => return Ok(code),
                     Attempt::NothingYet => {
                         prepare(job, skipped, &shown)?;
-                        return start::<D>(job, signals);
+                        return runner.start(job, signals);
                     }
                     Attempt::Unusable(reason) => format!("is unusable: {reason}"),
                 }
@@ -111,32 +111,6 @@ fn newest_good<const D: usize>(job: &Job, signals: &Signals) -> Result<u8, Progr
             job.folder.file("scenario.toml").display()
         ),
     })
-}
-
-/// Picks the model, as at the start, and goes on.
-fn attempt<const D: usize>(
-    job: &Job,
-    state: &[u8],
-    signals: &Signals,
-    skipped: &str,
-    name: &str,
-) -> Result<Attempt, ProgramError> {
-    let scenario = &job.scenario;
-    let beforehand = || prepare(job, skipped, name);
-    match (&scenario.gravity, &scenario.rotation) {
-        (Gravity::None, _) => {
-            let model = |boundary| scenario.floating_model::<D>(boundary);
-            go_on(job, state, model, signals, beforehand)
-        }
-        (_, Some(rotation)) => {
-            let model = |boundary| scenario.turning_model::<D>(rotation, boundary);
-            go_on(job, state, model, signals, beforehand)
-        }
-        (_, None) => {
-            let model = |boundary| scenario.gravity_model::<D>(boundary);
-            go_on(job, state, model, signals, beforehand)
-        }
-    }
 }
 
 /// A good checkpoint has been found: says so if it is not the newest, and takes

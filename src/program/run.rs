@@ -6,18 +6,19 @@ use toml::Value;
 
 use crate::output::RunFolder;
 use crate::program::cli::RunArguments;
+use crate::program::criteria::Program;
 use crate::program::drive::{self, Job, Options};
 use crate::program::error::ProgramError;
 use crate::program::load::{Loaded, load};
 use crate::program::show::check_grains;
 use crate::program::signals::Signals;
-use crate::scenario::{Assignment, Dimension, Gravity, Origin, Path, Scenario, Start};
+use crate::scenario::{Assignment, Dimension, Origin, Path, Scenario};
 
-pub(super) fn run(arguments: &RunArguments) -> Result<u8, ProgramError> {
+pub(super) fn run(arguments: &RunArguments, program: &Program) -> Result<u8, ProgramError> {
     let mut assignments = arguments.set.clone();
     assignments.extend(arguments.seed.map(seed_is));
     assignments.extend(arguments.until.map(until));
-    let loaded = load(&arguments.scenario, assignments)?;
+    let loaded = load(&arguments.scenario, assignments, program)?;
     let seed = loaded.scenario.seed;
     let folder = arguments
         .out
@@ -41,6 +42,7 @@ pub(super) fn run(arguments: &RunArguments) -> Result<u8, ProgramError> {
         folder: &folder,
         force: arguments.force,
         options,
+        program,
     }
     .begin(&signals)
 }
@@ -54,6 +56,8 @@ pub(super) struct Run<'a> {
     /// Whether an earlier run may be overwritten.
     pub(super) force: bool,
     pub(super) options: Options,
+    /// What knows the criterion that it names.
+    pub(super) program: &'a Program,
 }
 
 impl Run<'_> {
@@ -81,31 +85,11 @@ impl Run<'_> {
             text,
             options: self.options,
         };
-        let done = start::<D>(&job, signals);
+        let done = self.program.runner(&job.scenario).start(&job, signals);
         if let Err(ProgramError::Scenario(_)) = done {
             job.folder.discard();
         }
         done
-    }
-}
-
-/// Makes the grains and picks the model: without gravity nobody sleeps.
-pub(super) fn start<const D: usize>(job: &Job, signals: &Signals) -> Result<u8, ProgramError> {
-    let start = Start::<D>::new(&job.origin, &job.scenario)?;
-    let scenario: &Scenario = &job.scenario;
-    match (&scenario.gravity, &scenario.rotation) {
-        (Gravity::None, _) => {
-            let model = |boundary| scenario.floating_model(boundary);
-            drive::drive(job, start, model, signals)
-        }
-        (_, Some(rotation)) => {
-            let model = |boundary| scenario.turning_model(rotation, boundary);
-            drive::drive(job, start, model, signals)
-        }
-        (_, None) => {
-            let model = |boundary| scenario.gravity_model(boundary);
-            drive::drive(job, start, model, signals)
-        }
     }
 }
 

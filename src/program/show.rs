@@ -7,7 +7,9 @@ use serde::Serialize;
 
 use crate::boundary::Cuboid;
 use crate::engine::Simulation;
+use crate::policy::Never;
 use crate::program::cli::CheckArguments;
+use crate::program::criteria::Program;
 use crate::program::error::ProgramError;
 use crate::program::load::{load, unknown};
 use crate::scenario::{
@@ -57,12 +59,23 @@ pub(super) fn preset(name: &str) -> Result<u8, ProgramError> {
     say(preset.text.trim_end()).map(|()| 0)
 }
 
+pub(super) fn criteria(program: &Program) -> Result<u8, ProgramError> {
+    let criteria = program.criteria();
+    let widest = criteria.iter().map(|known| known.name.len()).max();
+    let widest = widest.unwrap_or(0);
+    let lines: Vec<String> = criteria
+        .iter()
+        .map(|known| format!("{:widest$}  {}", known.name, known.summary))
+        .collect();
+    say(&lines.join("\n")).map(|()| 0)
+}
+
 pub(super) fn schema() -> Result<u8, ProgramError> {
     say(&format!("{:#}", json_schema())).map(|()| 0)
 }
 
-pub(super) fn check(arguments: &CheckArguments) -> Result<u8, ProgramError> {
-    let loaded = load(&arguments.scenario, arguments.set.clone())?;
+pub(super) fn check(arguments: &CheckArguments, program: &Program) -> Result<u8, ProgramError> {
+    let loaded = load(&arguments.scenario, arguments.set.clone(), program)?;
     let (origin, scenario) = (&loaded.origin, &loaded.scenario);
     let given = match scenario.dimension {
         Dimension::Two => check_grains::<2>(origin, scenario)?.grains.len(),
@@ -107,11 +120,13 @@ pub(super) fn check_grains<const D: usize>(
             Simulation::with_settings(scenario.floating_model(boundary), grains, settings).map(drop)
         }
         (_, Some(rotation)) => {
-            let model = scenario.turning_model(rotation, boundary);
+            // Whoever sleeps: his parameters were checked when they were read.
+            let model = scenario.turning_model(rotation, Never, boundary);
             Simulation::with_settings(model, grains, settings).map(drop)
         }
         (_, None) => {
-            Simulation::with_settings(scenario.gravity_model(boundary), grains, settings).map(drop)
+            let model = scenario.gravity_model(Never, boundary);
+            Simulation::with_settings(model, grains, settings).map(drop)
         }
     };
     tried.map_err(|error| start.refuse(origin, scenario, error))?;

@@ -20,6 +20,7 @@ use std::time::Instant;
 use indicatif::ProgressBar;
 
 use crate::program::cli::SweepArguments;
+use crate::program::criteria::Program;
 use crate::program::error::ProgramError;
 use crate::program::progress::{bar, show_on, time_left};
 use crate::program::show::say;
@@ -31,8 +32,8 @@ use crate::program::sweep::plan::Plan;
 /// The most runs of a sweep.
 pub(super) const MOST_RUNS: u64 = 100_000;
 
-pub(super) fn sweep(arguments: &SweepArguments) -> Result<u8, ProgramError> {
-    let plan = Plan::new(arguments)?;
+pub(super) fn sweep(arguments: &SweepArguments, program: &Program) -> Result<u8, ProgramError> {
+    let plan = Plan::new(arguments, program)?;
     let named = || PathBuf::from("runs").join(format!("{}-sweep", plan.name));
     let path = arguments.out.clone().unwrap_or_else(named);
     let signals = Signals::listen().map_err(ProgramError::io("signals"))?;
@@ -47,6 +48,7 @@ pub(super) fn sweep(arguments: &SweepArguments) -> Result<u8, ProgramError> {
         threads: threads(arguments),
         checkpoint_every: arguments.checkpoint_every,
         signals: &signals,
+        program,
     };
     let progress = Progress::new(bar(arguments.quiet), &outcomes);
     // One that can't be written now may be later, and nothing is lost by that.

@@ -4,6 +4,7 @@ use std::path::{Path as FilePath, PathBuf};
 
 use toml::{Table, Value};
 
+use crate::scenario::criteria::{KnownCriterion, built_in_criteria, resolve};
 use crate::scenario::error::{Problem, Refusal, ScenarioError};
 use crate::scenario::path::Path;
 use crate::scenario::place::{Line, Place, locate};
@@ -38,6 +39,8 @@ pub struct Origin {
     pub folder: PathBuf,
     /// Values that replace those of the text.
     pub assignments: Vec<Assignment>,
+    /// The sleep criteria that it may name.
+    pub criteria: Vec<KnownCriterion>,
 }
 
 impl Origin {
@@ -50,6 +53,7 @@ impl Origin {
             format: Format::Toml,
             folder: PathBuf::new(),
             assignments: Vec::new(),
+            criteria: built_in_criteria().to_vec(),
         }
     }
 
@@ -85,6 +89,7 @@ impl Origin {
             format: if is_json { Format::Json } else { Format::Toml },
             folder: file.parent().map(FilePath::to_path_buf).unwrap_or_default(),
             assignments: Vec::new(),
+            criteria: built_in_criteria().to_vec(),
         })
     }
 
@@ -216,6 +221,7 @@ pub fn read_text(origin: &Origin) -> Result<Scenario, Refusal> {
         misfit(origin, path, error.into_inner().message())
     })?;
     validate(origin, &scenario)?;
+    resolve(origin, &mut scenario)?;
     scenario.resolve();
     Ok(scenario)
 }
@@ -237,7 +243,7 @@ fn shortened(message: &str) -> String {
 }
 
 /// Turns what serde says into a refusal that says what to write instead.
-fn misfit(origin: &Origin, path: Path, message: &str) -> Refusal {
+pub(super) fn misfit(origin: &Origin, path: Path, message: &str) -> Refusal {
     let quoted: Vec<&str> = message.split('`').skip(1).step_by(2).collect();
     let unknown = message.starts_with("unknown field") || message.starts_with("unknown variant");
     let hint = quoted

@@ -1,6 +1,7 @@
 //! What a scenario file may say: one schema for TOML and JSON.
 
 mod conditions;
+mod criteria;
 mod gravity;
 mod parameters;
 mod rotation;
@@ -8,6 +9,7 @@ mod sleep;
 mod sources;
 
 pub use conditions::{Output, Stop};
+pub use criteria::Criteria;
 pub use gravity::Gravity;
 pub use parameters::{Guards, Parameters, Threshold};
 pub use rotation::{Rotation, Turns};
@@ -54,6 +56,9 @@ pub struct Scenario {
     /// How exactly grains fall asleep and wake; the defaults are the model.
     #[serde(default)]
     pub sleep: Sleep,
+    /// Parameters of sleep criteria other than the paper's, by name.
+    #[serde(default, skip_serializing_if = "Criteria::is_empty")]
+    pub criteria: Criteria,
     /// Sleeping grains check at intervals whether they are still supported.
     /// Left out: they don't.
     #[serde(default, skip_serializing_if = "Option::is_none")]

@@ -167,7 +167,12 @@ fn check<const D: usize>(origin: &Origin, scenario: &Scenario) -> Result<(), Sce
         Gravity::None => {
             Simulation::with_settings(scenario.floating_model(sides), grains, settings).map(drop)
         }
-        _ => Simulation::with_settings(scenario.gravity_model(sides), grains, settings).map(drop),
+        _ => Simulation::with_settings(
+            scenario.gravity_model(scenario.criterion().unwrap(), sides),
+            grains,
+            settings,
+        )
+        .map(drop),
     };
     tried.map_err(|error| start.refuse(origin, scenario, error))
 }
@@ -187,8 +192,12 @@ fn run<const D: usize>(origin: &Origin, scenario: &Scenario) -> Result<StopReaso
             Simulation::with_settings(scenario.floating_model(sides), grains, settings)
                 .map(|mut simulation| simulation.run(&limits, &mut ()))
         }
-        _ => Simulation::with_settings(scenario.gravity_model(sides), grains, settings)
-            .map(|mut simulation| simulation.run(&limits, &mut ())),
+        _ => Simulation::with_settings(
+            scenario.gravity_model(scenario.criterion().unwrap(), sides),
+            grains,
+            settings,
+        )
+        .map(|mut simulation| simulation.run(&limits, &mut ())),
     };
     ran.map_err(|error| start.refuse(origin, scenario, error))
 }

@@ -6,10 +6,7 @@
 /// Images count from the places at which the two are filed, not from where they
 /// are stored: so nothing changes when periods are taken off a position.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(in crate::engine) struct Link<const D: usize> {
-    particle: u32,
-    image: u32,
-}
+pub(in crate::engine) struct Link<const D: usize>(u64);
 
 impl<const D: usize> Link<D> {
     /// Each axis has so many binary digits of the image.
@@ -18,28 +15,35 @@ impl<const D: usize> Link<D> {
 
     #[inline]
     pub(in crate::engine) fn new(particle: u32, image: u32) -> Self {
-        Link { particle, image }
+        Link(u64::from(image) << 32 | u64::from(particle))
     }
 
     #[inline]
     pub(in crate::engine) fn particle(self) -> u32 {
-        self.particle
+        self.0 as u32
     }
 
     /// Zero for the image that lies in the grid.
     #[inline]
     pub(in crate::engine) fn image(self) -> u32 {
-        self.image
+        (self.0 >> 32) as u32
     }
 
     /// How `particle`, next to which this was found, is found next to this.
     #[inline]
     pub(in crate::engine) fn seen_from(self, particle: u32) -> Self {
-        let image = match self.image {
+        let image = match self.image() {
             0 => 0,
             image => Self::image_of(&Self::turns_of(image).map(|turns| -turns)),
         };
-        Link { particle, image }
+        Link::new(particle, image)
+    }
+
+    /// Whether it is on a list: without a branch, for lists are short.
+    #[inline]
+    pub(in crate::engine) fn is_in(self, list: &[Self]) -> bool {
+        list.iter()
+            .fold(false, |any, link| any | (link.0 == self.0))
     }
 
     /// The periods to add along each axis.

@@ -7,6 +7,7 @@ use crate::engine::{Counts, Limits, Simulation, StopReason};
 use crate::error::SetupError;
 use crate::model::Observer;
 use crate::observe::TrajectoryHash;
+use crate::policy::Criterion;
 use crate::program::bench::arguments::DepositionArguments;
 use crate::program::bench::gas::bytes_of;
 use crate::program::bench::memory::Memory;
@@ -57,7 +58,7 @@ impl Rain {
     pub(super) fn simulation(
         &self,
         memory: &Memory,
-    ) -> Result<Simulation<GravityModel<3>, 3>, ProgramError> {
+    ) -> Result<Simulation<GravityModel<Criterion, 3>, 3>, ProgramError> {
         if self.width < 2.0 {
             return Err(SetupError::Parameter {
                 field: "width",
@@ -88,7 +89,10 @@ impl Rain {
         let scenario = read_text(&origin).map_err(ScenarioError::from)?;
         let start = Start::<3>::new(&origin, &scenario)?;
         memory.forget_peak();
-        let model = scenario.gravity_model(start.boundary);
+        let model = scenario.gravity_model(
+            Criterion::SlowDescent(scenario.slow_descent()),
+            start.boundary,
+        );
         Ok(Simulation::with_settings(
             model,
             start.grains,
@@ -100,11 +104,11 @@ impl Rain {
 /// Runs from sample to sample, a multiple of `step` in simulated time, until a
 /// limit is reached, and shows each; samples are not timed.
 pub(super) fn sampled<O: Observer<3>>(
-    simulation: &mut Simulation<GravityModel<3>, 3>,
+    simulation: &mut Simulation<GravityModel<Criterion, 3>, 3>,
     step: f64,
     limits: &Limits,
     observer: &mut O,
-    mut show: impl FnMut(&Simulation<GravityModel<3>, 3>, Cost) -> Result<(), ProgramError>,
+    mut show: impl FnMut(&Simulation<GravityModel<Criterion, 3>, 3>, Cost) -> Result<(), ProgramError>,
 ) -> Result<(Cost, StopReason), ProgramError> {
     let before = simulation.counts().total();
     let mut cost = Cost::default();
@@ -135,7 +139,7 @@ pub(super) fn sampled<O: Observer<3>>(
 struct Samples(Vec<(usize, usize)>);
 
 impl Samples {
-    fn add(&mut self, simulation: &Simulation<GravityModel<3>, 3>) {
+    fn add(&mut self, simulation: &Simulation<GravityModel<Criterion, 3>, 3>) {
         let modes = simulation.mode_counts();
         self.0.push((modes.normal, modes.falling));
     }
@@ -166,7 +170,7 @@ impl Window {
     /// Goes to where the window begins.
     fn enter(
         self,
-        simulation: &mut Simulation<GravityModel<3>, 3>,
+        simulation: &mut Simulation<GravityModel<Criterion, 3>, 3>,
         progress: &mut Progress,
     ) -> (Cost, StopReason) {
         let Some(from) = self.from else {
@@ -181,7 +185,7 @@ impl Window {
     }
 
     /// From here on.
-    fn limits(self, simulation: &Simulation<GravityModel<3>, 3>) -> Limits {
+    fn limits(self, simulation: &Simulation<GravityModel<Criterion, 3>, 3>) -> Limits {
         let total = simulation.counts().total();
         Limits {
             time: self.until.map_or(Time::NEVER, Time::from_units),

@@ -5,6 +5,7 @@ use crate::engine::{Limits, Simulation};
 use crate::error::SetupError;
 use crate::model::Parts;
 use crate::particle::{Mode, Particle, Vector};
+use crate::policy::Criterion;
 use crate::program::bench::arguments::{GasStart, ScalingArguments, ScalingSubject};
 use crate::program::bench::deposition::Rain;
 use crate::program::bench::gas::{Plan, usual_collisions, usual_equilibration};
@@ -145,8 +146,8 @@ fn heaps(arguments: &ScalingArguments, table: &mut Table) -> Result<(), ProgramE
 /// A simulation of these grains, otherwise like another.
 fn on_top_of(
     heap: Vec<Particle<3>>,
-    like: &Simulation<GravityModel<3>, 3>,
-) -> Result<Simulation<GravityModel<3>, 3>, SetupError> {
+    like: &Simulation<GravityModel<Criterion, 3>, 3>,
+) -> Result<Simulation<GravityModel<Criterion, 3>, 3>, SetupError> {
     let model = like.model();
     let model = Parts {
         dynamics: model.dynamics,

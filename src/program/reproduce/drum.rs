@@ -248,14 +248,16 @@ fn numbers(
         .map_or(0.0, |last| points[last][0] + 0.5 * BIN);
     let row = Row::shown(
         of,
-        format!("depth below which it rests, in d; {name}"),
+        format!("depth below the axis from which on it rests, in d; {name}"),
         Estimate {
-            mean: still,
+            mean: still + surface.depth(),
             error: 0.5 * BIN,
         },
         1,
         "Where the velocity falls below a thousandth of the highest. With V_wakeup = 0.5 the paper \
-         has two thirds of the radius; with 0.05 and less no frozen region.",
+         has two thirds of the radius, not saying from where; with 0.05 and less no frozen region. \
+         Depths in the figure count from the surface, which lies below the axis by what the next \
+         row says.",
     );
     let two_thirds = 2.0 / 3.0 * drum.radius;
     rows.push(if drum.wake_speed == 0.5 && !drum.ground {

@@ -39,7 +39,7 @@ impl Effort {
             fraction_allowed: 0.03,
             exponent_allowed: 0.4,
             drops: 150,
-            growing: (300, 12.0, 12.0),
+            growing: (600, 10.0, 24.0),
             packed: (300, &[0.05, 0.02]),
         }
     }

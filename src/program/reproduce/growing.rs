@@ -3,6 +3,7 @@
 use crate::analysis::line_fit;
 use crate::engine::{Limits, Simulation, StopReason};
 use crate::plot::{Axis, Chart, Series};
+use crate::policy::Criterion;
 use crate::program::error::ProgramError;
 use crate::program::estimate::Estimate;
 use crate::program::load::open;
@@ -21,16 +22,21 @@ const LONGEST: f64 = 600.0;
 type Look = [f64; 3];
 
 /// A deposit with V_sleep = V_wakeup = `threshold`, looked at while it grows.
-fn curve(threshold: f64, grains: usize, until: f64) -> Result<Vec<Look>, ProgramError> {
-    let (_, mut origin) = open("deposition")?;
+fn curve(context: &Context<'_>, threshold: f64, until: f64) -> Result<Vec<Look>, ProgramError> {
+    let (_, mut origin) = open("deposition", context.program)?;
     origin.assignments = assigned(&[
-        format!("grains.1.rain.count={grains}"),
+        format!("grains.1.rain.count={}", context.effort.growing.0),
+        format!(
+            "parameters.elastic_speed={:?}",
+            context.effort.elastic_speed
+        ),
         format!("parameters.sleep_speed={threshold:?}"),
         format!("parameters.wake_speed={threshold:?}"),
     ])?;
     let scenario = read_text(&origin)?;
     let start = Start::<3>::new(&origin, &scenario)?;
-    let model = scenario.gravity_model(start.boundary.clone());
+    let policy = Criterion::SlowDescent(scenario.slow_descent());
+    let model = scenario.gravity_model(policy, start.boundary.clone());
     let mut simulation = Simulation::with_settings(model, start.grains, scenario.settings())?;
     let clock = ProcessorClock::start();
     let mut looks = Vec::new();
@@ -73,14 +79,14 @@ fn exponent(looks: &[Look], from: f64) -> Estimate {
 }
 
 pub(super) fn report(context: &Context<'_>) -> Result<Report, ProgramError> {
-    let (grains, without, with) = context.effort.growing;
+    let (_, without, with) = context.effort.growing;
     let mut chart = Chart::new("Fig. 5: processor time of a growing deposit").with_axes(
         Axis::new("time", "√(d/g)").logarithmic(),
         Axis::new("processor time", "s").logarithmic(),
     );
     let (mut rows, mut table) = (Vec::new(), Vec::new());
     for (threshold, until) in [(0.0, without), (0.05, with), (0.1, with)] {
-        let looks = curve(threshold, grains, until)?;
+        let looks = curve(context, threshold, until)?;
         for [time, seconds, events] in &looks {
             table.push(
                 [threshold, *time, *seconds, *events]
@@ -93,14 +99,7 @@ pub(super) fn report(context: &Context<'_>) -> Result<Report, ProgramError> {
         let row = Row::shown(
             "Fig. 5",
             format!("exponent of the events per time against time, V_t = {threshold}"),
-            exponent(
-                &looks,
-                if threshold > 0.0 {
-                    0.35 * with
-                } else {
-                    0.35 * without
-                },
-            ),
+            exponent(&looks, 0.5 * until),
             1,
             if threshold > 0.0 {
                 "With sleep only the flowing layer costs: so much per unit of time, whatever has \

@@ -7,6 +7,7 @@ use std::path::Path;
 use serde::Deserialize;
 
 use crate::output::{Frame, Summary, XyzError, XyzReader};
+use crate::program::criteria::Program;
 use crate::program::error::ProgramError;
 use crate::program::load::open;
 use crate::program::run::seed_is;
@@ -25,8 +26,8 @@ pub(super) struct RunSpec {
 }
 
 impl RunSpec {
-    fn scenario(&self) -> Result<(Origin, Scenario), ProgramError> {
-        let (_, mut origin) = open(self.preset)?;
+    fn scenario(&self, program: &Program) -> Result<(Origin, Scenario), ProgramError> {
+        let (_, mut origin) = open(self.preset, program)?;
         for text in &self.set {
             let assignment: Result<Assignment, _> = text.parse();
             let assignment = assignment.map_err(|_| ProgramError::Reproduction {
@@ -41,12 +42,23 @@ impl RunSpec {
 }
 
 /// All runs of some figures, none twice.
-#[derive(Debug, Default)]
-pub(super) struct RunList {
+pub(super) struct RunList<'a> {
+    program: &'a Program,
     runs: Vec<RunSpec>,
 }
 
-impl RunList {
+impl<'a> RunList<'a> {
+    pub(super) fn new(program: &'a Program) -> Self {
+        RunList {
+            program,
+            runs: Vec::new(),
+        }
+    }
+
+    pub(super) fn program(&self) -> &'a Program {
+        self.program
+    }
+
     pub(super) fn add(&mut self, run: RunSpec) {
         if !self.runs.contains(&run) {
             self.runs.push(run);
@@ -54,7 +66,7 @@ impl RunList {
     }
 }
 
-impl Tasks for RunList {
+impl Tasks for RunList<'_> {
     fn runs(&self) -> usize {
         self.runs.len()
     }
@@ -64,7 +76,7 @@ impl Tasks for RunList {
     }
 
     fn scenario_of(&self, run: usize) -> Result<(Origin, Scenario), ProgramError> {
-        self.runs[run].scenario()
+        self.runs[run].scenario(self.program)
     }
 }
 

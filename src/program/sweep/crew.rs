@@ -10,6 +10,7 @@ use std::thread;
 use std::time::Duration;
 
 use crate::output::RunFolder;
+use crate::program::criteria::Program;
 use crate::program::drive::{Options, scenario_text};
 use crate::program::error::ProgramError;
 use crate::program::progress::Gauge;
@@ -45,6 +46,7 @@ pub(in crate::program) struct Crew<'a, T> {
     pub(in crate::program) threads: usize,
     pub(in crate::program) checkpoint_every: Option<f64>,
     pub(in crate::program) signals: &'a Signals,
+    pub(in crate::program) program: &'a Program,
 }
 
 impl<T: Tasks> Crew<'_, T> {
@@ -122,7 +124,12 @@ impl<T: Tasks> Crew<'_, T> {
             Ok(found) if found == scenario_text(&scenario)? => {
                 // Once collapsed it would collapse again.
                 if !Outcome::read(folder).is_collapsed() {
-                    continued(RunFolder::open(folder)?, options, self.signals)?;
+                    continued(
+                        RunFolder::open(folder)?,
+                        options,
+                        self.signals,
+                        self.program,
+                    )?;
                 }
                 Ok(())
             }
@@ -138,6 +145,7 @@ impl<T: Tasks> Crew<'_, T> {
                     folder,
                     force: true,
                     options,
+                    program: self.program,
                 };
                 run.begin(self.signals).map(drop)
             }

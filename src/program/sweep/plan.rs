@@ -7,6 +7,7 @@ use toml::{Table, Value};
 use xxhash_rust::xxh3::xxh3_64;
 
 use crate::program::cli::SweepArguments;
+use crate::program::criteria::Program;
 use crate::program::drive::scenario_text;
 use crate::program::error::ProgramError;
 use crate::program::load::open;
@@ -37,13 +38,13 @@ pub(super) struct Plan {
 
 impl Plan {
     /// Refuses every combination that can be refused before grains are made.
-    pub(super) fn new(arguments: &SweepArguments) -> Result<Self, ProgramError> {
+    pub(super) fn new(arguments: &SweepArguments, program: &Program) -> Result<Self, ProgramError> {
         let mut variations = arguments.set.clone();
         let end = arguments.until.map(until).map(Variation::fixed);
         variations.extend(end);
         check_paths(&variations)?;
         let combinations = count(&variations, arguments.seeds)?;
-        let (name, origin) = open(&arguments.scenario)?;
+        let (name, origin) = open(&arguments.scenario, program)?;
         let mut plan = Plan {
             name,
             origin,

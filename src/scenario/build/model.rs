@@ -16,9 +16,9 @@ use crate::time::Time;
 /// The model of a scenario without gravity.
 pub type FloatingModel<const D: usize> =
     Parts<ForceFree, Polynomial, Restitution, Never, Cuboid<D>>;
-/// The model of a scenario in which something turns.
-pub type TurningModel<const D: usize> =
-    Parts<Drumming<D>, Turning, Restitution, SlowDescent, Cuboid<D>>;
+/// The model of a scenario in which something turns, with `S` for who sleeps and
+/// wakes.
+pub type TurningModel<S, const D: usize> = Parts<Drumming<D>, Turning, Restitution, S, Cuboid<D>>;
 
 /// Gravity that turns, or the ground.
 #[derive(Clone, Copy, Debug)]
@@ -64,9 +64,9 @@ impl<const D: usize> Dynamics<D> for Drumming<D> {
     }
 }
 
-/// The model of a scenario with gravity.
-pub type GravityModel<const D: usize> =
-    Parts<UniformGravity<D>, Polynomial, Restitution, SlowDescent, Cuboid<D>>;
+/// The model of a scenario with gravity, and with `S` for who sleeps and wakes.
+pub type GravityModel<S, const D: usize> =
+    Parts<UniformGravity<D>, Polynomial, Restitution, S, Cuboid<D>>;
 
 impl Scenario {
     /// Lower end and length of an axis that is bounded on both sides, in d, and
@@ -126,9 +126,9 @@ impl Scenario {
         }
     }
 
-    /// Who falls asleep and wakes.
+    /// The paper's criteria as the scenario has them, whichever it names.
     #[must_use]
-    pub fn policy(&self) -> SlowDescent {
+    pub fn slow_descent(&self) -> SlowDescent {
         let (parameters, sleep) = (&self.parameters, &self.sleep);
         SlowDescent {
             sleep_speed: parameters.sleep_speed,
@@ -174,26 +174,32 @@ impl Scenario {
         }
     }
 
-    /// The model with gravity, sleep and wake.
+    /// The model with gravity, in which `policy` says who sleeps and wakes.
     #[must_use]
-    pub fn gravity_model<const D: usize>(&self, boundary: Cuboid<D>) -> GravityModel<D> {
+    pub fn gravity_model<S, const D: usize>(
+        &self,
+        policy: S,
+        boundary: Cuboid<D>,
+    ) -> GravityModel<S, D> {
         let component = |axis, _| self.gravity.component(axis, D);
         Parts {
             dynamics: UniformGravity::new(Vector::from_fn(component)),
             predictor: Polynomial,
             collision_rule: self.collision_rule(),
-            state_policy: self.policy(),
+            state_policy: policy,
             boundary,
         }
     }
 
-    /// The model with gravity or ground that turns.
+    /// The model with gravity or ground that turns, in which `policy` says who
+    /// sleeps and wakes.
     #[must_use]
-    pub fn turning_model<const D: usize>(
+    pub fn turning_model<S, const D: usize>(
         &self,
         rotation: &Rotation,
+        policy: S,
         boundary: Cuboid<D>,
-    ) -> TurningModel<D> {
+    ) -> TurningModel<S, D> {
         let gravity = Vector::from_fn(|axis, _| self.gravity.component(axis, D));
         let (rate, plane) = (rotation.angular_velocity, [0, D - 1]);
         let dynamics = match rotation.of {
@@ -213,7 +219,7 @@ impl Scenario {
             dynamics,
             predictor: Turning,
             collision_rule: self.collision_rule(),
-            state_policy: self.policy(),
+            state_policy: policy,
             boundary,
         }
     }

@@ -8,9 +8,14 @@ use crate::policy::{
 
 /// How exactly grains fall asleep and wake. What the paper leaves open is
 /// decided by the defaults; the alternatives are here to be compared.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub struct Sleep {
+    /// The criterion: `"slow_descent"` (the paper's, the default),
+    /// `"isostatic_support"`, `"displacement_window"`, `"velocity_variance"`,
+    /// `"granular_temperature"`, `"dynamo_sleep"` or `"never"`. Its parameters
+    /// stand in `criteria`.
+    pub criterion: String,
     /// Which speed is compared with V_sleep and with the previous one.
     pub speed_read: SpeedRead,
     /// Which velocity has to point down.
@@ -42,6 +47,7 @@ impl Default for Sleep {
     fn default() -> Self {
         let model = SlowDescent::default();
         Sleep {
+            criterion: "slow_descent".to_owned(),
             speed_read: model.speed_read,
             descent_read: model.descent_read,
             comparison: model.comparison,

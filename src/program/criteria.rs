@@ -1,0 +1,309 @@
+//! Which sleep criteria the program knows, and how a run gets the one that its
+//! scenario names: by one virtual call at its beginning. Everything after that
+//! is compiled for the policy.
+
+use std::fmt;
+use std::marker::PhantomData;
+use std::process::ExitCode;
+
+use serde::Serialize;
+use serde::de::DeserializeOwned;
+
+use crate::boundary::Cuboid;
+use crate::model::{Model, StatePolicy};
+use crate::policy::Criterion;
+use crate::program::drive::{self, Attempt, Job};
+use crate::program::error::ProgramError;
+use crate::program::signals::Signals;
+use crate::scenario::{
+    Dimension, Gravity, KnownCriterion, Origin, Problem, Scenario, Start, built_in_criteria,
+};
+
+/// The command-line program, with the sleep criteria that it knows: the built-in
+/// ones, and those that are added.
+///
+/// A crate of one's own becomes the whole program, `run`, `resume`, `sweep`,
+/// `compare` and `why` included, by a `main` of one line. The fields of the policy
+/// are its parameters in scenarios, under `[criteria.NAME]`.
+///
+/// ```no_run
+/// use std::process::ExitCode;
+///
+/// use grainfall::model::{Impact, NoEvent, Place, Reason, SleepDecision, StatePolicy};
+/// use grainfall::model::{Surroundings, WakeDecision, Waking};
+/// use grainfall::{Vector, program::Program};
+/// use serde::{Deserialize, Serialize};
+///
+/// /// Asleep at any slow collision with a static grain; any hit wakes.
+/// #[derive(Serialize, Deserialize)]
+/// struct Slow {
+///     speed: f64,
+/// }
+///
+/// impl<const D: usize> StatePolicy<D> for Slow {
+///     type Memory = ();
+///     type Event = NoEvent;
+///
+///     fn should_sleep<S: Surroundings<D>>(
+///         &self,
+///         hit: &Impact<D>,
+///         _after: Vector<D>,
+///         _near: &S,
+///         _memory: &mut (),
+///     ) -> SleepDecision {
+///         let reason = Reason::new("slow", hit.arriving_speed(), self.speed);
+///         if hit.is_on_static() && reason.value < reason.limit {
+///             return SleepDecision::Sleep(Place::HalfWay, reason);
+///         }
+///         SleepDecision::Stay(reason)
+///     }
+///
+///     fn should_wake<S: Surroundings<D>>(
+///         &self,
+///         hit: &Impact<D>,
+///         _near: &S,
+///         _struck: &(),
+///     ) -> WakeDecision<D> {
+///         WakeDecision::Wake(Waking::at_rest(), Reason::new("hit", hit.closing_speed(), 0.0))
+///     }
+/// }
+///
+/// fn main() -> ExitCode {
+///     Program::new().with_criterion::<Slow>("slow", "arrives slowly").main()
+/// }
+/// ```
+#[derive(Default)]
+pub struct Program {
+    own: Vec<Own>,
+}
+
+/// A criterion that was added.
+struct Own {
+    known: KnownCriterion,
+    runner: Box<dyn Runner>,
+}
+
+impl fmt::Debug for Program {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.debug_list()
+            .entries(self.criteria().iter().map(|known| known.name))
+            .finish()
+    }
+}
+
+impl Program {
+    /// With the built-in criteria.
+    #[must_use]
+    pub fn new() -> Self {
+        Program::default()
+    }
+
+    /// Adds a policy that scenarios may name, with what it is in a line. Its
+    /// fields are read from `[criteria.NAME]`; one with a default may be left
+    /// out. A built-in criterion of the same name is hidden.
+    #[must_use]
+    pub fn with_criterion<P>(mut self, name: &'static str, summary: &'static str) -> Self
+    where
+        P: StatePolicy<2> + StatePolicy<3> + Serialize + DeserializeOwned + 'static,
+    {
+        self.own.push(Own {
+            known: KnownCriterion::of_policy::<P>(name, summary),
+            runner: Box::new(Added(PhantomData::<fn() -> P>)),
+        });
+        self
+    }
+
+    /// Runs the program with the arguments of this process, and says how it went.
+    #[must_use]
+    pub fn main(&self) -> ExitCode {
+        super::run_command(self)
+    }
+
+    /// All criteria, those that were added first.
+    #[must_use]
+    pub fn criteria(&self) -> Vec<KnownCriterion> {
+        let own = self.own.iter().map(|own| own.known);
+        own.chain(built_in_criteria().iter().copied()).collect()
+    }
+
+    /// What runs a scenario.
+    pub(super) fn runner(&self, scenario: &Scenario) -> &dyn Runner {
+        let name = &scenario.sleep.criterion;
+        let named = |own: &&Own| own.known.name == name;
+        match self.own.iter().find(named) {
+            // Without gravity nobody sleeps, whoever is named.
+            Some(own) if scenario.gravity != Gravity::None => own.runner.as_ref(),
+            _ => &BuiltIn,
+        }
+    }
+}
+
+/// Something that is done with a model which only a scenario knows.
+pub(super) trait Task<const D: usize> {
+    type Output;
+
+    fn run<M: Model<D>>(self, model: impl FnOnce(Cuboid<D>) -> M) -> Self::Output;
+}
+
+/// What can be done with the scenarios that name one criterion.
+pub(super) trait Runner: Send + Sync {
+    /// Makes the grains and runs from the start; says the exit code.
+    fn start(&self, job: &Job, signals: &Signals) -> Result<u8, ProgramError>;
+
+    /// Goes on from the state that a checkpoint holds.
+    fn go_on(
+        &self,
+        job: &Job,
+        state: &[u8],
+        signals: &Signals,
+        beforehand: &dyn Fn() -> Result<(), ProgramError>,
+    ) -> Result<Attempt, ProgramError>;
+}
+
+/// Where a policy comes from.
+trait Choice: Send + Sync {
+    type Policy: StatePolicy<2> + StatePolicy<3>;
+
+    /// Whether scenarios without gravity come here, too.
+    const FLOATS: bool;
+
+    fn policy(&self, scenario: &Scenario) -> Option<Self::Policy>;
+}
+
+struct BuiltIn;
+
+impl Choice for BuiltIn {
+    type Policy = Criterion;
+
+    const FLOATS: bool = true;
+
+    fn policy(&self, scenario: &Scenario) -> Option<Criterion> {
+        scenario.criterion()
+    }
+}
+
+struct Added<P>(PhantomData<fn() -> P>);
+
+impl<P: StatePolicy<2> + StatePolicy<3> + DeserializeOwned> Choice for Added<P> {
+    type Policy = P;
+
+    const FLOATS: bool = false;
+
+    fn policy(&self, scenario: &Scenario) -> Option<P> {
+        scenario.own_criterion()
+    }
+}
+
+impl<C: Choice> Runner for C {
+    fn start(&self, job: &Job, signals: &Signals) -> Result<u8, ProgramError> {
+        match job.scenario.dimension {
+            Dimension::Two => {
+                let start = Start::<2>::new(&job.origin, &job.scenario)?;
+                with_model(
+                    self,
+                    job,
+                    Begin {
+                        job,
+                        start,
+                        signals,
+                    },
+                )?
+            }
+            Dimension::Three => {
+                let start = Start::<3>::new(&job.origin, &job.scenario)?;
+                with_model(
+                    self,
+                    job,
+                    Begin {
+                        job,
+                        start,
+                        signals,
+                    },
+                )?
+            }
+        }
+    }
+
+    fn go_on(
+        &self,
+        job: &Job,
+        state: &[u8],
+        signals: &Signals,
+        beforehand: &dyn Fn() -> Result<(), ProgramError>,
+    ) -> Result<Attempt, ProgramError> {
+        let task = GoOn {
+            job,
+            state,
+            signals,
+            beforehand,
+        };
+        match job.scenario.dimension {
+            Dimension::Two => with_model::<_, 2, _>(self, job, task)?,
+            Dimension::Three => with_model::<_, 3, _>(self, job, task)?,
+        }
+    }
+}
+
+/// Does a task with the model of a scenario.
+fn with_model<C, const D: usize, T>(
+    choice: &C,
+    job: &Job,
+    task: T,
+) -> Result<T::Output, ProgramError>
+where
+    C: Choice,
+    C::Policy: StatePolicy<D>,
+    T: Task<D>,
+{
+    let scenario = &job.scenario;
+    if C::FLOATS && scenario.gravity == Gravity::None {
+        return Ok(task.run(|boundary| scenario.floating_model(boundary)));
+    }
+    let policy = choice
+        .policy(scenario)
+        .ok_or_else(|| misfit(&job.origin, scenario))?;
+    Ok(match &scenario.rotation {
+        Some(rotation) => task.run(|boundary| scenario.turning_model(rotation, policy, boundary)),
+        None => task.run(|boundary| scenario.gravity_model(policy, boundary)),
+    })
+}
+
+/// The scenario names a criterion that this program does not know. (It has been
+/// read with others.)
+fn misfit(origin: &Origin, scenario: &Scenario) -> ProgramError {
+    let problem = Problem::Value {
+        found: format!("`{}`", scenario.sleep.criterion),
+        allowed: "it is not among the criteria of this program".to_owned(),
+    };
+    let path = crate::scenario::Path::root().key("sleep").key("criterion");
+    ProgramError::from(origin.refuse(path, problem))
+}
+
+struct Begin<'a, const D: usize> {
+    job: &'a Job,
+    start: Start<D>,
+    signals: &'a Signals,
+}
+
+impl<const D: usize> Task<D> for Begin<'_, D> {
+    type Output = Result<u8, ProgramError>;
+
+    fn run<M: Model<D>>(self, model: impl FnOnce(Cuboid<D>) -> M) -> Self::Output {
+        drive::drive(self.job, self.start, model, self.signals)
+    }
+}
+
+struct GoOn<'a> {
+    job: &'a Job,
+    state: &'a [u8],
+    signals: &'a Signals,
+    beforehand: &'a dyn Fn() -> Result<(), ProgramError>,
+}
+
+impl<const D: usize> Task<D> for GoOn<'_> {
+    type Output = Result<Attempt, ProgramError>;
+
+    fn run<M: Model<D>>(self, model: impl FnOnce(Cuboid<D>) -> M) -> Self::Output {
+        drive::go_on(self.job, self.state, model, self.signals, self.beforehand)
+    }
+}
