@@ -81,6 +81,9 @@ pub(super) fn replay<const D: usize>(
             "its grains are dropped one by one, which is not carried out again for stress and force",
         ));
     }
+    let policy = scenario.criterion().ok_or_else(|| {
+        refuse("its sleep criterion is not a built-in one, so it can't be carried out again here")
+    })?;
     let start = Start::<D>::new(&origin, &scenario)?;
     match (&scenario.gravity, &scenario.rotation) {
         (Gravity::None, _) => {
@@ -88,11 +91,11 @@ pub(super) fn replay<const D: usize>(
             watch(run, &origin, &scenario, start, model, watched)
         }
         (_, Some(rotation)) => {
-            let model = |boundary| scenario.turning_model(rotation, boundary);
+            let model = |boundary| scenario.turning_model(rotation, policy, boundary);
             watch(run, &origin, &scenario, start, model, watched)
         }
         (_, None) => {
-            let model = |boundary| scenario.gravity_model(boundary);
+            let model = |boundary| scenario.gravity_model(policy, boundary);
             watch(run, &origin, &scenario, start, model, watched)
         }
     }
