@@ -88,7 +88,7 @@ impl Drum {
         }
         let rings = self.rings as f64;
         if D == 2 {
-            require(self.rings == 1, "rings", rings, "in the plane it is 1")?;
+            require(self.rings == 1, "rings", rings, "1 is allowed in the plane")?;
         } else {
             let allowed = "2 … 10000 is allowed";
             require((2..=10_000).contains(&self.rings), "rings", rings, allowed)?;

@@ -187,7 +187,7 @@ impl Checker<'_> {
             self.scenario.gravity == Gravity::Down(1.0),
             || inside.clone(),
             "used with another gravity than 1",
-            "it is filled under unit gravity down the last axis",
+            "only unit gravity down the last axis is allowed: it is filled under it",
         )?;
         let volume = 4.0 * drum.radius * drum.radius * drum_of.length();
         self.require(
