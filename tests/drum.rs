@@ -169,7 +169,7 @@ fn what_is_carried_stays_on_its_circle() {
     let mut simulation = Simulation::new(model(ground, Never), vec![grain]).unwrap();
     let time = 1000.0;
     simulation.run(&until(time), &mut ());
-    let grain = simulation.snapshot()[0].clone();
+    let grain = simulation.snapshot()[0];
     let (sin, cos) = libm::sincos(0.7 * time);
     let place = centre + Vector::<2>::new(3.0 * cos + 4.0 * sin, 3.0 * sin - 4.0 * cos);
     close((grain.position - place).norm(), 0.0, 1.0e-11, "place");

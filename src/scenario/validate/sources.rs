@@ -168,8 +168,8 @@ impl Checker<'_> {
     fn drum(&self, drum: &Drum, inside: &Path) -> Result<(), Refusal> {
         let drum_of = setup::Drum::from(*drum);
         let made = match self.scenario.dimension {
-            Dimension::Two => drum_of.wall::<2>().map(drop),
-            Dimension::Three => drum_of.wall::<3>().map(drop),
+            Dimension::Two => drum_of.validated::<2>().map(drop),
+            Dimension::Three => drum_of.validated::<3>().map(drop),
         };
         match made {
             Ok(()) => {}
