@@ -565,6 +565,47 @@ fn bounds_hold<const D: usize>(numbers: &mut Numbers) {
     blurred(numbers, parabola);
 }
 
+/// A grain that has just left one at rest, at all speeds and on all sides.
+fn returns_hold<const D: usize>(numbers: &mut Numbers) {
+    let mut scale = |least: f64, most: f64| {
+        let part = 0.5 * (1.0 + numbers.next());
+        libm::exp10(least + part * (most - least))
+    };
+    let (fast, along, pulled) = (scale(-9.0, 3.0), scale(-12.0, 0.0), scale(-3.0, 3.0));
+    let mut vector = || Vector::<D>::from_fn(|_, _| numbers.next());
+    let normal = vector().normalize();
+    let distance = 1.0 + 1.0e-13 * vector()[0];
+    let mut velocity = vector() * fast;
+    // Away, often by a hair.
+    velocity += normal * (-velocity.dot(&normal) - fast * along);
+    let own = Parabola {
+        position: Vector::<D>::zeros(),
+        velocity,
+        acceleration: vector() * pulled,
+    };
+    let place = normal * distance;
+    let rest = Parabola {
+        position: place,
+        velocity: Vector::<D>::zeros(),
+        acceleration: Vector::<D>::zeros(),
+    };
+    let forecast = Polynomial.pair(&Approach {
+        first: own,
+        second: rest,
+        shift: Vector::<D>::zeros(),
+        distance: 1.0,
+        growth: 0.0,
+        touching: true,
+        horizon: f64::INFINITY,
+    });
+    let bound = Polynomial.not_back_before(&own, &place);
+    let contact = match forecast {
+        Forecast::Never => f64::INFINITY,
+        Forecast::Contact(time) | Forecast::AskAgain(time) => time,
+    };
+    assert!(bound <= contact, "{bound} > {contact}: {own:?} {place:?}");
+}
+
 proptest! {
     #![proptest_config(ProptestConfig { cases: 2_000, failure_persistence: None, ..ProptestConfig::default() })]
 
@@ -576,5 +617,16 @@ proptest! {
         bounds_hold::<2>(&mut numbers);
         bounds_hold::<3>(&mut numbers);
         bounds_hold::<5>(&mut numbers);
+    }
+
+    /// Nobody is back before the time up to which it is said to be away.
+    #[test]
+    fn nobody_is_back_too_early(seed in any::<u64>()) {
+        let mut numbers = Numbers(seed);
+        for _ in 0..20 {
+            returns_hold::<1>(&mut numbers);
+            returns_hold::<2>(&mut numbers);
+            returns_hold::<3>(&mut numbers);
+        }
     }
 }

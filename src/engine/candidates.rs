@@ -4,6 +4,7 @@
 
 use crate::engine::body::{LONG_AGO, World, flight_of, is_known, scale_at};
 use crate::engine::cells::Link;
+use crate::engine::glances::Onlooker;
 use crate::engine::search::shift;
 use crate::engine::simulation::Simulation;
 use crate::model::{Crowd, Dynamics, Flight, LANES, Model, Nook, Predictor};
@@ -17,7 +18,80 @@ pub(super) struct Candidate<const D: usize> {
     link: Link<D>,
 }
 
+impl<const D: usize> World<D> {
+    /// Those among these that the onlooker may meet soon.
+    #[inline(always)]
+    fn look(&self, own: &Onlooker<D>, links: &[Link<D>], candidates: &mut Vec<Candidate<D>>) {
+        let World { near, glances, .. } = self;
+        for few in links.chunks(LANES) {
+            let links = match few {
+                &[a, b, c, d] => [a, b, c, d],
+                _ => std::array::from_fn(|lane| few[if lane < few.len() { lane } else { 0 }]),
+            };
+            let images = links.iter().fold(0, |any, link| any | link.image());
+            let shifts = (images != 0).then(|| links.map(|link| near.link_shift(link)));
+            let (bounds, mut soon) = glances.not_before(own, links.map(Link::particle), shifts);
+            soon &= (1 << few.len()) - 1;
+            if soon == 0 {
+                continue;
+            }
+            let bounds = bounds.to_array();
+            while soon != 0 {
+                let lane = soon.trailing_zeros() as usize;
+                soon &= soon - 1;
+                candidates.push(Candidate {
+                    bound: bounds[lane],
+                    link: links[lane],
+                });
+            }
+        }
+    }
+}
+
 impl<M: Model<D>, const D: usize> Simulation<M, D> {
+    /// Looks at those alone whom a grain's new list names and the one before did
+    /// not: what is known of the others holds. False if there is more to look at.
+    pub(super) fn meet_newcomers(&mut self, particle: u32) -> bool {
+        self.world.near.make_bed(particle, &self.world.bodies);
+        let (bed, _) = self.world.near.bed(particle);
+        let known = self.slots[particle as usize].contact;
+        let Some(onlooker) = self.world.onlooker(particle, known) else {
+            return false;
+        };
+        if bed.is_some() {
+            return false;
+        }
+        let mut near = std::mem::take(&mut self.candidates);
+        self.world
+            .look(&onlooker, self.world.near.newcomers(), &mut near);
+        self.ask(particle, None, &mut near);
+        self.candidates = near;
+        true
+    }
+
+    /// Asks candidates in the order of their bounds, but for one that has been
+    /// asked, until one is later than the contact that is known.
+    fn ask(&mut self, particle: u32, asked: Option<Link<D>>, near: &mut Vec<Candidate<D>>) {
+        let now = self.world.clock;
+        while !near.is_empty() {
+            let (mut bound, mut place) = (near[0].bound, 0);
+            for (other, candidate) in near.iter().enumerate().skip(1) {
+                if candidate.bound < bound {
+                    (bound, place) = (candidate.bound, other);
+                }
+            }
+            if bound > self.slots[particle as usize].contact - now {
+                break;
+            }
+            let Candidate { link, .. } = near.swap_remove(place);
+            if asked != Some(link) {
+                let found = self.world.near.found(particle, link);
+                self.meet(particle, &found);
+            }
+        }
+        near.clear();
+    }
+
     /// Notes the first contact with anybody on a grain's list, but for the one
     /// that has been asked, if it comes before what is known already: nearly all
     /// are told to come later by a bound, and the others are asked in the order
@@ -39,23 +113,7 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
         let mut until = back.map_or(known, |(_, bound)| known.min(now + 2.0 * bound));
         loop {
             self.find_candidates(particle, until, back, &mut near);
-            while !near.is_empty() {
-                let (mut bound, mut place) = (near[0].bound, 0);
-                for (other, candidate) in near.iter().enumerate().skip(1) {
-                    if candidate.bound < bound {
-                        (bound, place) = (candidate.bound, other);
-                    }
-                }
-                if bound > self.slots[particle as usize].contact - now {
-                    break;
-                }
-                let Candidate { link, .. } = near.swap_remove(place);
-                if asked != Some(link) {
-                    let found = self.world.near.found(particle, link);
-                    self.meet(particle, &found);
-                }
-            }
-            near.clear();
+            self.ask(particle, asked, &mut near);
             let contact = self.slots[particle as usize].contact;
             if contact <= until {
                 break;
@@ -94,30 +152,8 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
         {
             return;
         }
-        let Some(onlooker) = onlooker else {
-            return;
-        };
-        let World { near, glances, .. } = &self.world;
-        for few in movers.chunks(LANES) {
-            let links: [Link<D>; LANES] =
-                std::array::from_fn(|lane| few[if lane < few.len() { lane } else { 0 }]);
-            let images = links.iter().fold(0, |any, link| any | link.image());
-            let shifts = (images != 0).then(|| links.map(|link| near.link_shift(link)));
-            let others = links.map(Link::particle);
-            let (bounds, mut soon) = glances.not_before(&onlooker, others, shifts);
-            soon &= (1 << few.len()) - 1;
-            if soon == 0 {
-                continue;
-            }
-            let bounds = bounds.to_array();
-            while soon != 0 {
-                let lane = soon.trailing_zeros() as usize;
-                soon &= soon - 1;
-                candidates.push(Candidate {
-                    bound: bounds[lane],
-                    link: links[lane],
-                });
-            }
+        if let Some(onlooker) = onlooker {
+            self.world.look(&onlooker, movers, candidates);
         }
     }
 

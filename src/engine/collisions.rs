@@ -101,6 +101,8 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
         }
 
         let sleep = self.ask_sleep(&impact, rebound.velocity, a);
+        let dynamics = self.model.dynamics();
+        let other_ground = dynamics.ground_velocity(&stored_position, now);
         let mirrored = || Impact {
             id: ParticleId(b),
             particle: two,
@@ -109,6 +111,7 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
                 particle: one,
             },
             normal: -normal,
+            ground_velocity: other_ground,
             ..impact
         };
         let mut sleep_other = None;

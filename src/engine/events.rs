@@ -115,7 +115,14 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
             }
             self.counts.transfer += 1;
             self.tie(particle);
-            self.predict_listed(particle);
+            if self.world.bodies[particle as usize].mode.is_mobile()
+                && self.meet_newcomers(particle)
+            {
+                self.find_renewal(particle);
+                self.enqueue(particle);
+            } else {
+                self.predict_listed(particle);
+            }
         } else {
             self.find_renewal(particle);
             self.enqueue(particle);

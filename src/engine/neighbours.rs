@@ -71,6 +71,8 @@ pub(super) struct Neighbours<const D: usize> {
     periods: [f64; D],
     /// Room for a list in the making.
     fresh: Vec<Link<D>>,
+    /// Who was not on the list made last before it was made.
+    newcomers: Vec<Link<D>>,
 }
 
 impl<const D: usize> Neighbours<D> {
@@ -91,6 +93,7 @@ impl<const D: usize> Neighbours<D> {
                 boundary.period(axis).map_or(0.0, |period| period.length)
             }),
             fresh: Vec::new(),
+            newcomers: Vec::new(),
         }
     }
 
@@ -121,6 +124,11 @@ impl<const D: usize> Neighbours<D> {
     pub(super) fn list(&self, particle: u32) -> impl Iterator<Item = Found<D>> {
         let list = self.ties[particle as usize].list.iter();
         list.map(move |link| self.cells.found(particle, *link))
+    }
+
+    /// Whom the list that has just been made names and the one before did not.
+    pub(super) fn newcomers(&self) -> &[Link<D>] {
+        &self.newcomers
     }
 
     /// Somebody on the list of a grain.
@@ -247,7 +255,9 @@ impl<const D: usize> Neighbours<D> {
             let tie = &mut self.ties[link.particle() as usize];
             tie.forget(link.seen_from(particle));
         }
+        self.newcomers.clear();
         for link in list.iter().filter(|link| !link.is_in(&old)) {
+            self.newcomers.push(*link);
             let tie = &mut self.ties[link.particle() as usize];
             if tie.leash > 0.0 {
                 tie.list.push(link.seen_from(particle));

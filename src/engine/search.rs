@@ -82,8 +82,12 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
         if M::Dynamics::GROWS || !other.still || own.since != self.world.clock {
             return 0.0;
         }
-        let found = self.world.near.found(particle, link);
-        let place = other.position - own.position + shift(&self.model, found.turns, 1);
+        // A difference of two places next to each other is exact but for u σ; a
+        // period would bring in the rounding of its own length.
+        if self.world.near.found(particle, link).turns != [0; D] {
+            return 0.0;
+        }
+        let place = other.position - own.position;
         let flight = self.world.flight(&self.model, particle);
         self.model.predictor().not_back_before(&flight, &place)
     }

@@ -108,7 +108,7 @@ impl Checker<'_> {
             !matches!(self.scenario.gravity, Gravity::None),
             || key("rotation"),
             "used without gravity",
-            "a drum turns under gravity",
+            "a drum turns under gravity: give gravity, or leave out rotation",
         )?;
         let rate = rotation.angular_velocity;
         self.require(

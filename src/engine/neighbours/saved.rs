@@ -102,6 +102,7 @@ impl<const D: usize> Neighbours<D> {
                 boundary.period(axis).map_or(0.0, |period| period.length)
             }),
             fresh: Vec::new(),
+            newcomers: Vec::new(),
         };
         if !neighbours.are_mutual() {
             return Err("two lists do not agree");
