@@ -3,6 +3,7 @@
 //! It knows a model by [`Model`](crate::model::Model) alone and no
 //! implementation of its parts.
 
+mod answers;
 #[cfg(test)]
 mod audit;
 mod body;
@@ -31,6 +32,7 @@ mod slot;
 mod transitions;
 mod view;
 
+pub use answers::{Answer, Answers};
 pub use counts::{Counts, ModeCounts};
 pub use ledger::EnergyLedger;
 pub use missed::{Audit, Missed};

@@ -6,6 +6,7 @@
 mod analyse;
 mod bench;
 mod cli;
+mod compare;
 mod criteria;
 mod draw;
 mod drive;
@@ -23,6 +24,7 @@ mod signals;
 mod sweep;
 mod table;
 mod validate;
+mod why;
 
 pub use criteria::Program;
 pub use error::ProgramError;
@@ -46,6 +48,8 @@ fn run_command(program: &Program) -> ExitCode {
         Command::Run(arguments) => run::run(&arguments, program),
         Command::Resume(arguments) => resume::resume(&arguments, program),
         Command::Sweep(arguments) => sweep::sweep(&arguments, program),
+        Command::Compare(arguments) => compare::compare(&arguments, program),
+        Command::Why(arguments) => why::why(&arguments, program),
         Command::Criteria => show::criteria(program),
         Command::Presets => show::presets(),
         Command::Preset { name } => show::preset(&name),

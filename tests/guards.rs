@@ -3,11 +3,13 @@
 mod common;
 
 use common::{deposition, gas, hash, heavy, rain_on_base, rule, until};
-use grainfall::boundary::Side;
+use grainfall::boundary::{Cuboid, Side};
 use grainfall::collide::Restitution;
+use grainfall::dynamics::TurningGround;
 use grainfall::engine::{Guards, Limits, Settings, Simulation, StopReason};
-use grainfall::model::Model;
+use grainfall::model::{Dynamics, Model, Parts};
 use grainfall::policy::{Never, SlowDescent};
+use grainfall::predict::Turning;
 use grainfall::setup::Sizes;
 use grainfall::{Particle, ParticleId, SetupError, Time, Vector};
 
@@ -182,4 +184,44 @@ fn settings_out_of_range_are_refused() {
         };
         assert_eq!(field, wanted);
     }
+}
+
+/// How many collisions a grain makes between three that all but touch it and are
+/// carried along, before it is put to sleep.
+fn collisions_in_a_cage(rate: f64) -> u64 {
+    let middle = Vector::<2>::new(3.0, 0.0);
+    let down = Vector::<2>::new(0.0, -1.0);
+    let ground = TurningGround::new(down, rate, [0, 1], Vector::<2>::zeros());
+    let carried = ground.ground_velocity(&middle, Time::ZERO);
+    let mut grains = vec![Particle::new(
+        middle,
+        carried + Vector::<2>::new(3.0e-5, 2.0e-5),
+    )];
+    for bar in 0..3 {
+        let (sin, cos) = libm::sincos(0.3 + f64::from(bar) * 2.0 * core::f64::consts::PI / 3.0);
+        let place = middle + Vector::<2>::new(cos, sin) * (1.0 + 1.0e-13);
+        grains.push(Particle::fixed(place));
+    }
+    let model = Parts {
+        dynamics: ground,
+        predictor: Turning,
+        collision_rule: rule(1.0e-4),
+        state_policy: SlowDescent::default(),
+        boundary: Cuboid::new([Side::Open; 2]).unwrap(),
+    };
+    let mut simulation = Simulation::new(model, grains).unwrap();
+    let limits = Limits {
+        all_frozen: true,
+        ..Limits::events(20_000)
+    };
+    assert_eq!(simulation.run(&limits, &mut ()), StopReason::AllFrozen);
+    simulation.counts().frozen
+}
+
+#[test]
+fn a_cage_that_is_carried_along_catches_as_one_at_rest_does() {
+    let (at_rest, carried) = (collisions_in_a_cage(1.0e-9), collisions_in_a_cage(0.5));
+    println!("{at_rest} collisions in a cage at rest, {carried} in one that turns");
+    assert!(at_rest < 100);
+    assert_eq!(at_rest, carried);
 }

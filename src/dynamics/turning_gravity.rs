@@ -42,11 +42,22 @@ impl<const D: usize> TurningGravity<D> {
         self
     }
 
+    /// How many steps of such a length have been made by `time`. A step is made at
+    /// the instant of its multiple, for which the quotient alone may be too small.
+    fn steps_made(step: f64, time: Time) -> f64 {
+        let steps = libm::floor(time.units() / step);
+        if Time::from_units((steps + 1.0) * step) <= time {
+            steps + 1.0
+        } else {
+            steps
+        }
+    }
+
     /// The angle that gravity has turned by at `time`, in radians.
     fn angle(&self, time: Time) -> f64 {
         match self.step {
             None => self.rate * time.units(),
-            Some(step) => self.rate * step * libm::floor(time.units() / step),
+            Some(step) => self.rate * step * Self::steps_made(step, time),
         }
     }
 
@@ -55,8 +66,7 @@ impl<const D: usize> TurningGravity<D> {
         let Some(step) = self.step else {
             return f64::INFINITY;
         };
-        let steps = libm::floor(since.units() / step);
-        let next = Time::from_units((steps + 1.0) * step) - since;
+        let next = Time::from_units((Self::steps_made(step, since) + 1.0) * step) - since;
         if next > 0.0 { next } else { step }
     }
 
@@ -159,5 +169,36 @@ impl<const D: usize> Dynamics<D> for TurningGravity<D> {
             });
         }
         check_turning(&self.gravity, self.rate, self.plane)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::model::Flight;
+    use crate::particle::ParticleId;
+
+    /// 43 · 0.1 / 0.1 is less than 43 in `f64`.
+    #[test]
+    fn at_the_instant_of_a_step_it_has_been_made() {
+        let gravity = Vector::<2>::new(0.0, -1.0);
+        for step in [0.1, 0.02, 0.3, 0.7] {
+            let dynamics = TurningGravity::new(gravity, 0.5, [0, 1]).in_steps(step);
+            for count in 1..3000 {
+                let time = Time::from_units(f64::from(count) * step);
+                let (sin, cos) = libm::sincos(0.5 * step * f64::from(count));
+                let turned = Vector::<2>::new(sin, -cos);
+                assert!((dynamics.gravity(time) - turned).norm() < 1.0e-12);
+                let motion = Motion {
+                    id: ParticleId(0),
+                    position: Vector::zeros(),
+                    velocity: Vector::zeros(),
+                    mode: Mode::Normal,
+                };
+                let flight = dynamics.flight(&motion, time);
+                assert!((flight.velocity(0.5 * step) - turned * (0.5 * step)).norm() < 1.0e-12);
+                assert!((flight.next_step - step).abs() < 1.0e-9);
+            }
+        }
     }
 }

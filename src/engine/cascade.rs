@@ -114,7 +114,14 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
             }
         }
         // Where contacts work against each other some grain cannot leave.
-        let caught = sleeps && leaving.is_none() && resting[0].norm_squared().sqrt() <= most;
+        let caught = sleeps && leaving.is_none() && {
+            let place = self.world.particle_now(&self.model, particle).position;
+            let ground = self
+                .model
+                .dynamics()
+                .ground_velocity(&place, self.world.clock);
+            (resting[0] - ground).norm_squared().sqrt() <= most
+        };
         let after = leaving.unwrap_or(resting);
         let mut disturbed = Vec::new();
         for ((&member, velocity), was) in cluster.members.iter().zip(after).zip(before) {
@@ -159,6 +166,10 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
         }
         let gravity = self.model.dynamics().gravity(now);
         let hurried = lasted * gravity.norm_squared().sqrt() < HURRY * exit * f64::from(CONFINED);
+        // Where the ground moves the bars do so together: it falls relative to them.
+        for bar in &mut bars {
+            bar.speed = 0.0;
+        }
         let held = |fall: Vec<Vector<D>>| {
             fall[0].norm_squared().sqrt() < HELD * gravity.norm_squared().sqrt()
         };

@@ -58,8 +58,16 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
                 };
                 let struck = &self.memories[b as usize];
                 let policy = self.model.state_policy();
-                if let WakeDecision::Wake(waking, why) = policy.should_wake(&impact, &near, struck)
-                {
+                let decision = policy.should_wake(&impact, &near, struck);
+                match decision {
+                    WakeDecision::Stay(why) => {
+                        self.hear(b, |kept, it| kept.slept_on = Some(it), why)
+                    }
+                    WakeDecision::Wake(_, why) => {
+                        self.hear(b, |kept, it| kept.woke = Some(it), why)
+                    }
+                }
+                if let WakeDecision::Wake(waking, why) = decision {
                     kind = OccurrenceKind::Wake;
                     reason = Some(why);
                     extra_energy = waking.extra_energy;
@@ -93,6 +101,8 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
         }
 
         let sleep = self.ask_sleep(&impact, rebound.velocity, a);
+        let dynamics = self.model.dynamics();
+        let other_ground = dynamics.ground_velocity(&stored_position, now);
         let mirrored = || Impact {
             id: ParticleId(b),
             particle: two,
@@ -101,6 +111,7 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
                 particle: one,
             },
             normal: -normal,
+            ground_velocity: other_ground,
             ..impact
         };
         let mut sleep_other = None;
@@ -314,8 +325,14 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
         let memory = &mut self.memories[particle as usize];
         let policy = self.model.state_policy();
         match policy.should_sleep(impact, after, &near, memory) {
-            SleepDecision::Stay(_) => None,
-            SleepDecision::Sleep(place, reason) => Some((place, reason)),
+            SleepDecision::Stay(reason) => {
+                self.hear(particle, |kept, it| kept.stayed_awake = Some(it), reason);
+                None
+            }
+            SleepDecision::Sleep(place, reason) => {
+                self.hear(particle, |kept, it| kept.slept = Some(it), reason);
+                Some((place, reason))
+            }
         }
     }
 

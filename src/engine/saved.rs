@@ -182,6 +182,7 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
             scratch: Vec::new(),
             candidates: Vec::new(),
             vigil: Vigil::default(),
+            ear: None,
             model,
         };
         restored.world.begin_epoch(&restored.model, saved.epoch);

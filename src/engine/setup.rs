@@ -107,6 +107,7 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
             scratch: Vec::new(),
             candidates: Vec::new(),
             vigil: Vigil::default(),
+            ear: None,
             model,
         };
         for particle in particles {

@@ -1,6 +1,7 @@
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
+use crate::engine::answers::Ear;
 use crate::engine::body::{World, flight_of, scale_at};
 use crate::engine::candidates::Candidate;
 use crate::engine::cells::Found;
@@ -47,6 +48,7 @@ pub struct Simulation<M: Model<D>, const D: usize> {
     pub(super) scratch: Vec<Found<D>>,
     pub(super) candidates: Vec<Candidate<D>>,
     pub(super) vigil: Vigil,
+    pub(super) ear: Option<Ear>,
 }
 
 impl<M: Model<D>, const D: usize> Simulation<M, D> {

@@ -73,6 +73,8 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
             .note_change(Entry::Sleep, particle, &state.velocity, &rest);
         self.slots[particle as usize] = Slot::EMPTY;
         self.traces[particle as usize].partner = Partner::Nobody;
+        // Ground that moves may be faster than the grain was.
+        self.note_speed(particle);
         self.schedule();
         self.counts.sleep += 1;
         self.report(

@@ -176,7 +176,8 @@ impl<const D: usize, F: TurningFlight<D>> Predictor<D, F> for Turning {
 
     fn not_before_resting(&self, nook: &Nook<'_, D, F>) -> [f64; LANES] {
         let own = Arc::tangent(nook.own);
-        let distances = nook.resting.distances.iter();
+        // Lanes without anybody have no distance.
+        let distances = nook.resting.distances.iter().filter(|&&d| d > 0.0);
         let least = distances.copied().fold(f64::INFINITY, f64::min) * nook.scale;
         let until = nook.own.changes_after();
         in_stages(

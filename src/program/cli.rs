@@ -6,8 +6,10 @@ use clap::{Args, Parser, Subcommand};
 
 use crate::program::analyse::AnalyseArguments;
 use crate::program::bench::BenchArguments;
+use crate::program::compare::CompareArguments;
 use crate::program::reproduce::ReproduceArguments;
 use crate::program::sweep::{MOST_RUNS, Variation};
+use crate::program::why::WhyArguments;
 use crate::scenario::Assignment;
 
 const EXAMPLES: &str = "\
@@ -19,8 +21,11 @@ Examples:
   grainfall resume runs/deposition-1            go on after an interruption
   grainfall sweep deposition --set parameters.sleep_speed=0.02,0.05,0.1 --seeds 4
                                                 many runs, on all cores
+  grainfall compare deposition --policies slow_descent,isostatic_support --seeds 3
+                                                sleep criteria, side by side
   grainfall draw runs/deposition-1 --time 50
   grainfall analyse runs/deposition-1           packing, contacts, motion: CSV and SVG
+  grainfall why runs/arch-1 --particle 1        asleep or awake, and why
   grainfall reproduce all --quick               the paper's figures, from small systems
   grainfall validate --quick                    known physics, in a minute
   grainfall bench gas                           what a collision costs
@@ -120,7 +125,7 @@ fn events(text: &str) -> Result<u64, String> {
 }
 
 /// A time that comes.
-fn instant(text: &str) -> Result<f64, String> {
+pub(super) fn instant(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
         Ok(time) if time.is_finite() => Ok(time),
         _ => Err("a finite number is allowed".to_owned()),
@@ -161,6 +166,10 @@ pub(super) enum Command {
     Check(CheckArguments),
     /// List the sleep criteria that a scenario can name
     Criteria,
+    /// Run a scenario under several sleep criteria, side by side
+    Compare(CompareArguments),
+    /// Say what a grain of a run does, and why
+    Why(WhyArguments),
     /// Print the JSON Schema of scenarios
     Schema,
     /// Draw the grains of a run as SVG

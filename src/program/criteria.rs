@@ -12,9 +12,11 @@ use serde::de::DeserializeOwned;
 use crate::boundary::Cuboid;
 use crate::model::{Model, StatePolicy};
 use crate::policy::Criterion;
+use crate::program::compare::{Census, TakeCensus};
 use crate::program::drive::{self, Attempt, Job};
 use crate::program::error::ProgramError;
 use crate::program::signals::Signals;
+use crate::program::why::{Ask, Question, Report};
 use crate::scenario::{
     Dimension, Gravity, KnownCriterion, Origin, Problem, Scenario, Start, built_in_criteria,
 };
@@ -158,6 +160,19 @@ pub(super) trait Runner: Send + Sync {
         signals: &Signals,
         beforehand: &dyn Fn() -> Result<(), ProgramError>,
     ) -> Result<Attempt, ProgramError>;
+
+    /// Goes through a run, from the state of a checkpoint or from the start, and
+    /// reports on a grain; `None` if that is no place to begin.
+    fn why(
+        &self,
+        job: &Job,
+        state: Option<&[u8]>,
+        question: Question,
+    ) -> Result<Option<Report>, ProgramError>;
+
+    /// Goes through a run again that had so many events, and counts what was
+    /// false.
+    fn census(&self, job: &Job, events: u64) -> Result<Census, ProgramError>;
 }
 
 /// Where a policy comes from.
@@ -242,6 +257,54 @@ impl<C: Choice> Runner for C {
             Dimension::Three => with_model::<_, 3, _>(self, job, task)?,
         }
     }
+
+    fn why(
+        &self,
+        job: &Job,
+        state: Option<&[u8]>,
+        question: Question,
+    ) -> Result<Option<Report>, ProgramError> {
+        match job.scenario.dimension {
+            Dimension::Two => ask::<_, 2>(self, job, state, question),
+            Dimension::Three => ask::<_, 3>(self, job, state, question),
+        }
+    }
+
+    fn census(&self, job: &Job, events: u64) -> Result<Census, ProgramError> {
+        match job.scenario.dimension {
+            Dimension::Two => {
+                let start = Start::<2>::new(&job.origin, &job.scenario)?;
+                with_model(self, job, TakeCensus { job, start, events })?
+            }
+            Dimension::Three => {
+                let start = Start::<3>::new(&job.origin, &job.scenario)?;
+                with_model(self, job, TakeCensus { job, start, events })?
+            }
+        }
+    }
+}
+
+fn ask<C, const D: usize>(
+    choice: &C,
+    job: &Job,
+    state: Option<&[u8]>,
+    question: Question,
+) -> Result<Option<Report>, ProgramError>
+where
+    C: Choice,
+    C::Policy: StatePolicy<D>,
+{
+    let start = match state {
+        Some(_) => None,
+        None => Some(Start::<D>::new(&job.origin, &job.scenario)?),
+    };
+    let task = Ask {
+        job,
+        state,
+        start,
+        question,
+    };
+    with_model(choice, job, task)?
 }
 
 /// Does a task with the model of a scenario.
@@ -266,6 +329,19 @@ where
         Some(rotation) => task.run(|boundary| scenario.turning_model(rotation, policy, boundary)),
         None => task.run(|boundary| scenario.gravity_model(policy, boundary)),
     })
+}
+
+/// Does a task with the model of a scenario in which nobody sleeps. (It is one of
+/// those that are compiled anyway.)
+pub(super) fn continued_without_sleep<const D: usize, T: Task<D>>(
+    scenario: &Scenario,
+    task: T,
+) -> T::Output {
+    let never = Criterion::Never;
+    match &scenario.rotation {
+        Some(rotation) => task.run(|boundary| scenario.turning_model(rotation, never, boundary)),
+        None => task.run(|boundary| scenario.gravity_model(never, boundary)),
+    }
 }
 
 /// The scenario names a criterion that this program does not know. (It has been

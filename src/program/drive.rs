@@ -1,17 +1,16 @@
 //! Carries a run through: slice by slice, with samples, signals and a summary.
 
 mod audits;
+mod dropper;
 mod files;
 mod pace;
+mod replay;
 mod report;
 mod state;
 
 use std::sync::Arc;
 use std::time::Instant;
 
-use rand_chacha::ChaCha8Rng;
-
-use crate::analysis;
 use crate::boundary::Cuboid;
 use crate::engine::{Limits, Simulation, StopReason};
 use crate::error::SetupError;
@@ -19,8 +18,10 @@ use crate::model::{Model, Observer, Occurrence, Surroundings};
 use crate::observe::TrajectoryHash;
 use crate::output::{Checkpoint, CollapseReport, RunFolder, StoppedBy};
 use crate::program::drive::audits::Audits;
+use crate::program::drive::dropper::Dropper;
 use crate::program::drive::files::{Files, Log};
 use crate::program::drive::pace::{Cadence, Pace, Samples};
+use crate::program::drive::replay::Diary;
 use crate::program::drive::state::{SavedRun, Unusable};
 use crate::program::error::ProgramError;
 use crate::program::means::NormalMean;
@@ -29,10 +30,10 @@ use crate::program::progress::{Gauge, Progress};
 use crate::program::show::say;
 use crate::program::signals::Signals;
 use crate::scenario::{Origin, Scenario, Start};
-use crate::setup::OneByOne;
 use crate::time::Time;
 
 pub(super) use files::{begin, scenario_text};
+pub(super) use replay::Replay;
 
 /// No run goes on for longer, in √(d/g).
 const LATEST: f64 = 8.0e9;
@@ -81,6 +82,8 @@ struct Watch {
     /// When the latest event was.
     latest: Time,
     log: Option<Log>,
+    /// Of a run that is gone through again.
+    diary: Option<Diary>,
 }
 
 impl<const D: usize> Observer<D> for Watch {
@@ -91,26 +94,9 @@ impl<const D: usize> Observer<D> for Watch {
         if let Some(log) = &mut self.log {
             log.observe(occurrence, after);
         }
-    }
-}
-
-/// Grains still to be dropped, one by one.
-struct Dropper<const D: usize> {
-    source: OneByOne<D>,
-    random: ChaCha8Rng,
-    dropped: usize,
-    count: usize,
-}
-
-impl<const D: usize> Dropper<D> {
-    fn new(scenario: &Scenario) -> Option<Self> {
-        let (source, random) = scenario.dropper()?;
-        Some(Dropper {
-            source,
-            random,
-            dropped: 0,
-            count: scenario.one_by_one().map_or(0, |drops| drops.count),
-        })
+        if let Some(diary) = &mut self.diary {
+            diary.observe(occurrence, after);
+        }
     }
 }
 
@@ -179,6 +165,7 @@ pub(super) fn drive<M: Model<D>, const D: usize>(
             normal: NormalMean::new(&snapshot, simulation.time()),
             latest: simulation.time(),
             log,
+            diary: None,
         },
         rain: simulation.mode_counts().falling,
         simulation,
@@ -417,30 +404,18 @@ impl<M: Model<D>, const D: usize> Run<'_, M, D> {
 
     /// Whether a slice is to end when everything is at rest.
     fn ends_frozen(&self) -> bool {
-        let more = |dropper: &Dropper<D>| dropper.dropped < dropper.count;
-        self.scenario.stop.all_frozen.unwrap_or(true) || self.dropper.as_ref().is_some_and(more)
+        self.scenario.stop.all_frozen.unwrap_or(true)
+            || self.dropper.as_ref().is_some_and(Dropper::has_more)
     }
 
     /// Everything is at rest: drops the next grain, or ends the run.
     fn all_at_rest(&mut self) -> Option<End> {
-        let Some(dropper) = &mut self.dropper else {
+        let dropper = self.dropper.as_mut().filter(|dropper| dropper.has_more());
+        let Some(dropper) = dropper else {
             return Some(End::new(StoppedBy::AllFrozen, 0));
         };
-        if dropper.dropped == dropper.count {
-            return Some(End::new(StoppedBy::AllFrozen, 0));
-        }
-        let heap = self.simulation.snapshot();
-        let top = analysis::highest_surface(&heap).unwrap_or(0.0);
-        // A grain that can't be dropped leaves everything as it was.
-        let mut random = dropper.random.clone();
-        let inserted = dropper
-            .source
-            .grain(top, &mut random)
-            .and_then(|grain| self.simulation.insert(grain).map(|_| grain));
-        match inserted {
+        match dropper.drop_into(&mut self.simulation) {
             Ok(grain) => {
-                dropper.random = random;
-                dropper.dropped += 1;
                 self.watch.normal.add(&grain, self.simulation.time());
                 None
             }

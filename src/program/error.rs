@@ -57,6 +57,20 @@ pub enum ProgramError {
     /// A system for a validation or a measurement can't be set up.
     #[error("the system can't be set up: {0}")]
     SetUp(#[from] SetupError),
+    /// A list of criteria that is none.
+    #[error("`{policies}` is no list of criteria; write their names with commas between them")]
+    Policies {
+        /// The list.
+        policies: String,
+    },
+    /// A run has no grain of this name.
+    #[error("{folder} has no grain {particle} at that time; grains are counted from 0")]
+    NoGrain {
+        /// The name.
+        particle: u32,
+        /// The run.
+        folder: String,
+    },
     /// None of the checkpoints of a run can be used.
     #[error("{folder} cannot be resumed:{reasons}\n{advice}")]
     Unresumable {
@@ -139,6 +153,8 @@ impl ProgramError {
             | ProgramError::UnknownSubject { .. }
             | ProgramError::CrystalCount { .. }
             | ProgramError::SetUp(_)
+            | ProgramError::NoGrain { .. }
+            | ProgramError::Policies { .. }
             | ProgramError::Unresumable { .. }
             | ProgramError::Reproduction { .. }
             | ProgramError::Sweep(_)

@@ -8,6 +8,7 @@ mod outcome;
 mod plan;
 mod values;
 
+pub(super) use crate::program::cli::SweepArguments;
 pub(super) use crew::{Crew, Tasks};
 pub use error::SweepError;
 pub(super) use outcome::Outcome;
@@ -19,7 +20,6 @@ use std::time::Instant;
 
 use indicatif::ProgressBar;
 
-use crate::program::cli::SweepArguments;
 use crate::program::criteria::Program;
 use crate::program::error::ProgramError;
 use crate::program::progress::{bar, show_on, time_left};
@@ -33,10 +33,59 @@ use crate::program::sweep::plan::Plan;
 pub(super) const MOST_RUNS: u64 = 100_000;
 
 pub(super) fn sweep(arguments: &SweepArguments, program: &Program) -> Result<u8, ProgramError> {
-    let plan = Plan::new(arguments, program)?;
-    let named = || PathBuf::from("runs").join(format!("{}-sweep", plan.name));
-    let path = arguments.out.clone().unwrap_or_else(named);
     let signals = Signals::listen().map_err(ProgramError::io("signals"))?;
+    let (plan, folder, outcomes) = work(arguments, "sweep", program, &signals)?;
+    if !arguments.quiet {
+        tell(&plan, &folder, &outcomes)?;
+    }
+    Ok(exit_code(&outcomes, &signals))
+}
+
+/// What a sweep has come to.
+pub(super) struct Done {
+    pub(super) exit_code: u8,
+    /// Of the sweep.
+    pub(super) folder: PathBuf,
+    /// The first value and the folder of each run.
+    pub(super) runs: Vec<(String, PathBuf)>,
+    pub(super) threads: usize,
+}
+
+/// Carries a sweep out; its folder is called after `purpose`, and nothing is told
+/// but what went wrong.
+pub(super) fn carry_out(
+    arguments: &SweepArguments,
+    purpose: &str,
+    program: &Program,
+    signals: &Signals,
+) -> Result<Done, ProgramError> {
+    let (plan, folder, outcomes) = work(arguments, purpose, program, signals)?;
+    let exit_code = exit_code(&outcomes, signals);
+    if exit_code != 0 && !arguments.quiet {
+        tell(&plan, &folder, &outcomes)?;
+    }
+    let run = |run: usize| {
+        let (combination, _) = plan.combination_of(run);
+        let value = plan.values_of(combination).swap_remove(0);
+        (value, folder.path().join(plan.folder_of(run)))
+    };
+    Ok(Done {
+        exit_code,
+        folder: folder.path().to_path_buf(),
+        runs: (0..plan.runs()).map(run).collect(),
+        threads: threads(arguments),
+    })
+}
+
+fn work(
+    arguments: &SweepArguments,
+    purpose: &str,
+    program: &Program,
+    signals: &Signals,
+) -> Result<(Plan, SweepFolder, Vec<Outcome>), ProgramError> {
+    let plan = Plan::new(arguments, program)?;
+    let named = || PathBuf::from("runs").join(format!("{}-{purpose}", plan.name));
+    let path = arguments.out.clone().unwrap_or_else(named);
     let folder = SweepFolder::open(&path, &plan.text, arguments.force)?;
     let read = |run| Outcome::read(&folder.path().join(plan.folder_of(run)));
     let mut outcomes: Vec<Outcome> = (0..plan.runs()).map(read).collect();
@@ -47,7 +96,7 @@ pub(super) fn sweep(arguments: &SweepArguments, program: &Program) -> Result<u8,
         folder: folder.path(),
         threads: threads(arguments),
         checkpoint_every: arguments.checkpoint_every,
-        signals: &signals,
+        signals,
         program,
     };
     let progress = Progress::new(bar(arguments.quiet), &outcomes);
@@ -74,10 +123,7 @@ pub(super) fn sweep(arguments: &SweepArguments, program: &Program) -> Result<u8,
     progress.finish();
     worked?;
     written?;
-    if !arguments.quiet {
-        tell(&plan, &folder, &outcomes)?;
-    }
-    Ok(exit_code(&outcomes, &signals))
+    Ok((plan, folder, outcomes))
 }
 
 fn threads(arguments: &SweepArguments) -> usize {

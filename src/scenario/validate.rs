@@ -108,7 +108,7 @@ impl Checker<'_> {
             !matches!(self.scenario.gravity, Gravity::None),
             || key("rotation"),
             "used without gravity",
-            "a drum turns under gravity",
+            "a drum turns under gravity: give gravity, or leave out rotation",
         )?;
         let rate = rotation.angular_velocity;
         self.require(
@@ -254,10 +254,14 @@ impl Checker<'_> {
             .all_frozen
             .unwrap_or(!matches!(scenario.gravity, Gravity::None));
         self.require(
-            all_frozen || stop.time.is_some() || stop.events.is_some(),
+            // Who never sleeps never comes to rest.
+            (all_frozen && scenario.sleep.criterion != "never")
+                || stop.time.is_some()
+                || stop.events.is_some(),
             || key("stop"),
             "never reached",
-            "give stop.time or stop.events; without gravity nothing comes to rest",
+            "give stop.time or stop.events; without gravity, or if nobody sleeps, nothing comes to \
+             rest",
         )?;
         let output = &scenario.output;
         for (path, every) in [

@@ -66,12 +66,12 @@ impl Drum {
         self.rings as f64 * self.ring_spacing
     }
 
-    /// The wall, all [`Mode::Fixed`], ring by ring.
+    /// The same drum, if its numbers are in range.
     ///
     /// # Errors
     ///
-    /// When a number is out of range.
-    pub fn wall<const D: usize>(&self) -> Result<Vec<Particle<D>>, SetupError> {
+    /// When one is not.
+    pub fn validated<const D: usize>(&self) -> Result<&Self, SetupError> {
         require(
             (2.5..=1.0e4).contains(&self.radius),
             "radius",
@@ -88,11 +88,21 @@ impl Drum {
         }
         let rings = self.rings as f64;
         if D == 2 {
-            require(self.rings == 1, "rings", rings, "in the plane it is 1")?;
+            require(self.rings == 1, "rings", rings, "1 is allowed in the plane")?;
         } else {
             let allowed = "2 … 10000 is allowed";
             require((2..=10_000).contains(&self.rings), "rings", rings, allowed)?;
         }
+        Ok(self)
+    }
+
+    /// The wall, all [`Mode::Fixed`], ring by ring.
+    ///
+    /// # Errors
+    ///
+    /// When a number is out of range.
+    pub fn wall<const D: usize>(&self) -> Result<Vec<Particle<D>>, SetupError> {
+        self.validated::<D>()?;
         let turn = 2.0 * core::f64::consts::PI;
         let each = libm::floor(turn * self.radius / self.arc_spacing) as usize;
         let mut wall = Vec::with_capacity(each * self.rings);

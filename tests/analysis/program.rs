@@ -343,3 +343,37 @@ velocity = [-0.3, 0.4]
     ));
     assert!(said.contains("greatest 0.0000"), "{said}");
 }
+
+#[test]
+fn the_surface_lies_below_the_lid() {
+    // Disks in rows that rise by one in two, up to x/2, under a lid of fixed ones.
+    let folder = tempfile::tempdir().unwrap();
+    let mut grains = Vec::new();
+    for column in 0..20 {
+        let x = f64::from(column);
+        for row in 0..8 {
+            let place = Vector::<2>::new(x, 0.5 * x - f64::from(row));
+            grains.push(Particle::frozen(place));
+        }
+        grains.push(Particle::fixed(Vector::<2>::new(x, 14.0)));
+    }
+    let frame = Frame::new(&grains, Time::ZERO, &Cuboid::<2>::open());
+    let mut text = Vec::new();
+    frame.write(&mut text).unwrap();
+    fs::write(folder.path().join("slope.xyz"), text).unwrap();
+    let said = printed(&analyse(folder.path(), &["slope.xyz", "angle"]));
+    let heights = folder.path().join("analysis/angle.csv");
+    for (x, height) in column(&heights, "x")
+        .iter()
+        .zip(column(&heights, "height_of_highest_grain"))
+    {
+        assert!((height - 0.5 * x - 0.5).abs() < 1.0e-9, "{x} {height}");
+    }
+    let of_map = column(&heights, "height_of_map");
+    let slope = (of_map[19] - of_map[0]) / 19.0;
+    assert!((slope - 0.5).abs() < 0.02, "{slope}");
+    assert!(
+        said.contains("of the highest grains rises at 26.565"),
+        "{said}"
+    );
+}

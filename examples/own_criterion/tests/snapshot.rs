@@ -47,10 +47,16 @@ fn the_same_source_in_the_plane_and_in_space() {
     let (code, plane) = run(place.path(), "plane", &PLANE);
     assert_eq!(code, Some(0));
     let table = line("space", &space) + &line("plane", &plane);
-    insta::assert_snapshot!(table, @"");
+    insta::assert_snapshot!(table, @r#"
+    space: 21 sleeps, 9 wakes, 12 frozen; "db0320374531253d"
+    plane: 35 sleeps, 23 wakes, 12 frozen; "fb84d5a517fc78ac"
+    "#);
     // What it left out stands in the scenario that was run.
     let text = std::fs::read_to_string(place.path().join("space/scenario.toml")).unwrap();
-    assert!(text.contains("[criteria.tired]\nslow_hits = 4\nspeed = 0.1"), "{text}");
+    assert!(
+        text.contains("[criteria.tired]\nslow_hits = 4\nspeed = 0.1"),
+        "{text}"
+    );
 }
 
 #[test]
@@ -64,7 +70,15 @@ fn an_interrupted_run_goes_on_with_it() {
     let scenario = concat!(env!("CARGO_MANIFEST_DIR"), "/tired.toml");
     let mut child = Command::new(env!("CARGO_BIN_EXE_own-criterion"))
         .current_dir(place.path())
-        .args(["run", scenario, "--quiet", "--out", "killed", "--checkpoint-every", "1"])
+        .args([
+            "run",
+            scenario,
+            "--quiet",
+            "--out",
+            "killed",
+            "--checkpoint-every",
+            "1",
+        ])
         .spawn()
         .unwrap();
     while !killed.join("checkpoint").exists() {
@@ -90,6 +104,33 @@ fn its_parameters_are_checked_and_it_is_listed() {
     assert!(said.contains("did you mean `slow_hits`?"), "{said}");
     let listed = program(place.path(), &["criteria"]);
     let said = String::from_utf8(listed.stdout).unwrap();
-    assert!(said.starts_with("tired                 slow collisions in a row\n"), "{said}");
+    assert!(
+        said.starts_with("tired                 slow collisions in a row\n"),
+        "{said}"
+    );
     assert!(said.contains("\nslow_descent "), "{said}");
+}
+
+#[test]
+fn it_is_compared_and_explained() {
+    let place = tempfile::tempdir().unwrap();
+    let scenario = concat!(env!("CARGO_MANIFEST_DIR"), "/tired.toml");
+    let policies = "tired,slow_descent";
+    let compared = program(place.path(), &["compare", scenario, "--policies", policies]);
+    let said = String::from_utf8(compared.stdout).unwrap();
+    assert_eq!(compared.status.code(), Some(0), "{said}");
+    assert!(
+        said.contains("| tired ") && said.contains("false_sleeps"),
+        "{said}"
+    );
+
+    run(place.path(), "space", &[]);
+    let asked = program(
+        place.path(),
+        &["why", "space", "--particle", "25", "--json"],
+    );
+    let answer: Value = serde_json::from_slice(&asked.stdout).unwrap();
+    assert_eq!(answer["mode"], "frozen");
+    assert_eq!(answer["fell_asleep"]["condition"], "slow hit");
+    assert_eq!(answer["fell_asleep"]["limit"], 0.1);
 }

@@ -125,8 +125,8 @@ impl<const D: usize> Rooms<D> {
         while block != NONE {
             let this = &self.blocks[block as usize];
             let mut squared = f32x4::ZERO;
-            for axis in 0..D {
-                let apart = f32x4::new(this.places[axis]) - here[axis];
+            for (places, &here) in this.places.iter().zip(here) {
+                let apart = f32x4::new(*places) - here;
                 squared += apart * apart;
             }
             let both = f32x4::new(this.reaches) + reach;

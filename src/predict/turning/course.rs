@@ -202,9 +202,10 @@ impl<N: Real, const D: usize> Course<N, D> {
         let negative = 4.0 * fastest * turn + farthest * turn * self.rate.abs();
         let bound = 3.0 * least * least - negative * (1.0 + ROUND);
         // The searches want a fourth coefficient that is positive: what it is
-        // too large by, the third is too small by.
+        // too large by, the third is too small by, and by a third more, so that the
+        // slope, too, stays below.
         let quartic = (bound / 12.0).max(most * most / 16.0);
-        let lent = (quartic - bound / 12.0) * valid * (1.0 + ROUND);
+        let lent = (quartic - bound / 12.0) * (valid * (4.0 / 3.0)) * (1.0 + ROUND);
         let third = dot(v, a).times(3.0) + dot(r, &place.jerk);
         let cubic = third / N::from_f64(3.0) - N::from_f64(lent);
         let c1 = (dot(r, v) - distance * self.growth).times(2.0);

@@ -180,3 +180,69 @@ fn bounds_are_not_later_than_contacts() {
     println!("{contacts} contacts, {close} of them with bounds later than half of the time");
     assert!(contacts > 2_000 && 2 * close > contacts);
 }
+
+/// Grains that overlap, open and close again without having come apart meet when
+/// they begin to close.
+#[test]
+fn overlaps_meet_when_they_begin_to_close() {
+    let mut random = ChaCha8Rng::seed_from_u64(4);
+    let mut contacts = 0;
+    for case in 0..20_000 {
+        let mut question = question(&mut random);
+        question.touching = false;
+        question.distance = 1.0;
+        let rate = libm::pow(10.0, random.random_range(-2.0..0.7));
+        let dynamics = TurningGravity::new(vector(&mut random, 1.5), rate, [0, 2]);
+        let direction = vector(&mut random, 1.0).normalize();
+        let place = direction * random.random_range(0.6..0.99);
+        let velocity =
+            direction * libm::pow(10.0, random.random_range(-3.0..0.0)) + vector(&mut random, 0.3);
+        question.first = dynamics.flight(&motion(place, velocity, Mode::Normal), Time::ZERO);
+        let still = motion(Vector::<3>::zeros(), Vector::<3>::zeros(), Mode::Fixed);
+        question.second = dynamics.flight(&still, Time::ZERO);
+        let slope = |time: f64| {
+            let first: Vector<3> = question.first.position(time);
+            let velocity: Vector<3> = question.first.velocity(time);
+            first.dot(&velocity)
+        };
+        let Forecast::Contact(time) = Turning.pair(&question) else {
+            continue;
+        };
+        if slope(0.0) <= 0.0 || gap(&question, time) > -1.0e-9 {
+            continue;
+        }
+        contacts += 1;
+        assert!(slope(time).abs() < 1.0e-12, "case {case}: {}", slope(time));
+        for step in 1..100 {
+            let before = time * f64::from(step) / 100.0;
+            assert!(
+                slope(before) > 0.0,
+                "case {case}: closes at {before}, not {time}"
+            );
+        }
+    }
+    assert!(contacts > 2_000, "{contacts}");
+}
+
+/// How far ahead is asked for changes no bit of what is found, nor whether.
+#[test]
+fn answers_do_not_depend_on_the_horizon() {
+    let mut random = ChaCha8Rng::seed_from_u64(5);
+    let mut contacts = 0;
+    for case in 0..20_000 {
+        let mut question = question(&mut random);
+        question.growth = if random.random_bool(0.3) { 0.05 } else { 0.0 };
+        question.shift = Vector::<3>::new(0.0, 0.0, 0.0);
+        question.horizon = f64::INFINITY;
+        let Forecast::Contact(time) = Turning.pair(&question) else {
+            continue;
+        };
+        contacts += 1;
+        for longer in [1.0, 1.0 + 1.0e-15, 1.0 + 1.0e-9, 1.1, 2.0, 30.0] {
+            question.horizon = time * longer;
+            let found = Turning.pair(&question);
+            assert_eq!(found, Forecast::Contact(time), "case {case}, {longer}");
+        }
+    }
+    assert!(contacts > 5_000, "{contacts}");
+}

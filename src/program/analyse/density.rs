@@ -8,7 +8,7 @@ use crate::plot::{Axis, Chart, Map, Marker, Series};
 use crate::program::analyse::Task;
 use crate::program::analyse::arguments::axis_name;
 use crate::program::analyse::finding::{Columns, Finding, with_error};
-use crate::program::analyse::frames::has_landed;
+use crate::program::analyse::frames::is_free;
 use crate::program::error::ProgramError;
 
 /// Bins a diameter.
@@ -48,6 +48,12 @@ pub(super) fn profile<const D: usize>(task: &Task<'_, D>) -> Result<Finding, Pro
                 .with_colour([0x00, 0x72, 0xb2]),
         );
     let mut words = Vec::new();
+    // A heap that fills the box sideways has a height.
+    let level = task.samples.iter().all(|sample| {
+        sample.container.periodic[..D - 1]
+            .iter()
+            .all(|periodic| *periodic)
+    });
     let inner: Vec<f64> = task
         .samples
         .iter()
@@ -56,7 +62,7 @@ pub(super) fn profile<const D: usize>(task: &Task<'_, D>) -> Result<Finding, Pro
             Some(packing_fraction(&sample.grains, area)?.value)
         })
         .collect();
-    if axis == D - 1 && !inner.is_empty() {
+    if axis == D - 1 && level && !inner.is_empty() {
         let mean = blocked_mean(&inner);
         words.push(format!(
             "φ = {} between 25 % and 75 % of the heap's height",
@@ -154,7 +160,9 @@ fn fit<const D: usize>(task: &Task<'_, D>, surface: &[[f64; 2]], across: usize) 
 /// The mean angle of several fits, with the error that fits: that of their scatter,
 /// or of the only one.
 fn mean_angle(fits: &[LineFit]) -> Mean {
-    let angles: Vec<f64> = fits.iter().map(|fit| fit.angle().0).collect();
+    // Less than that is rounding.
+    let angle = |fit: &LineFit| (fit.angle().0 * 1.0e9).round() / 1.0e9 + 0.0;
+    let angles: Vec<f64> = fits.iter().map(angle).collect();
     let mut mean = blocked_mean(&angles);
     if let [fit] = fits {
         mean.error = fit.angle().1;
@@ -172,12 +180,13 @@ pub(super) fn angle<const D: usize>(task: &Task<'_, D>) -> Result<Finding, Progr
     let (mut of_maps, mut of_grains) = (Vec::new(), Vec::new());
     let (mut fits, mut others) = (Vec::new(), Vec::new());
     for sample in task.samples {
-        let landed: Vec<_> = sample.grains.iter().copied().filter(has_landed).collect();
-        let map = fraction_map(&landed, &sample.container, [across, D - 1], &bins, &up)?;
+        // A base lies below the surface, but the ring of a drum above it as well.
+        let free: Vec<_> = sample.grains.iter().copied().filter(is_free).collect();
+        let map = fraction_map(&free, &sample.container, [across, D - 1], &bins, &up)?;
         let surface = surface_of_map(&map, &bins, &up, level)?;
         fits.extend(fit(task, &surface, across));
         of_maps.push(surface);
-        let surface = surface_of_grains(&landed, across, D - 1, &bins, |_| true)?;
+        let surface = surface_of_grains(&free, across, D - 1, &bins, |_| true)?;
         others.extend(fit(task, &surface, across));
         of_grains.push(surface);
     }

@@ -91,12 +91,38 @@ impl Finding {
     }
 }
 
-/// A mean with its error for people: two digits of the error.
+/// A mean with its error for people: two digits of the error, but no more than
+/// seven of the mean.
 pub(super) fn with_error(mean: &Mean) -> String {
-    if !(mean.error > 0.0 && mean.error.is_finite()) {
-        return format!("{:.4}", mean.value);
+    let Mean { value, error, .. } = *mean;
+    if !(error > 0.0 && error.is_finite()) {
+        return format!("{value:.4}");
     }
-    let power = libm::floor(libm::log10(mean.error)) as i32;
-    let digits = (1 - power).clamp(0, 12) as usize;
-    format!("{:.digits$} ± {:.digits$}", mean.value, mean.error)
+    let power = |number: f64| libm::floor(libm::log10(number.abs())) as i32;
+    if error < 1.0e-6 * value.abs() {
+        let digits = (6 - power(value)).clamp(0, 12) as usize;
+        return format!("{value:.digits$} ± {error:.0e}");
+    }
+    let digits = (1 - power(error)).clamp(0, 12) as usize;
+    format!("{value:.digits$} ± {error:.digits$}")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn means_have_as_many_digits_as_they_are_sure_of() {
+        let shown = |value, error| {
+            with_error(&Mean {
+                value,
+                error,
+                count: 9,
+            })
+        };
+        assert_eq!(shown(0.632_17, 0.001_23), "0.6322 ± 0.0012");
+        assert_eq!(shown(-1234.56, 78.9), "-1235 ± 79");
+        assert_eq!(shown(0.687_397_447_948, 5.1e-11), "0.6873974 ± 5e-11");
+        assert_eq!(shown(2.5, f64::NAN), "2.5000");
+    }
 }

@@ -10,9 +10,10 @@ use crate::engine::{SavedOf, Simulation};
 use crate::model::{Boundary, Model};
 use crate::observe::TrajectoryHash;
 use crate::output::RunFolder;
+use crate::program::drive::dropper::Dropper;
 use crate::program::drive::files::{Files, SavedFiles};
 use crate::program::drive::pace::{Samples, SavedSamples};
-use crate::program::drive::{Dropper, Run, Watch};
+use crate::program::drive::{Run, Watch};
 use crate::program::error::ProgramError;
 use crate::program::means::NormalMean;
 use crate::scenario::Scenario;
@@ -130,12 +131,13 @@ impl<M: Model<D>, const D: usize> SavedRun<M, D> {
         folder: &RunFolder,
         model: impl FnOnce(Cuboid<D>) -> M,
     ) -> Result<Run<'a, M, D>, Unusable> {
-        let model = model(self.boundary(scenario)?);
-        let simulation = Simulation::restore(model, self.simulation)
-            .map_err(|error| unfit(error.to_string()))?;
-        if *simulation.settings() != scenario.settings() {
-            return Err(unfit("its settings are not those of the scenario"));
-        }
+        let (simulation, dropper) = restore_system(
+            self.boundary(scenario)?,
+            self.simulation,
+            self.dropper,
+            scenario,
+            model,
+        )?;
         let grains = simulation.mode_counts().total();
         if !self.normal.is_of(grains) || self.rain > grains as u64 {
             return Err(unfit("its sums are not over these grains"));
@@ -143,20 +145,6 @@ impl<M: Model<D>, const D: usize> SavedRun<M, D> {
         let output = &scenario.output;
         let samples = Samples::restore(output.series_every, output.frames_every, &self.samples)
             .ok_or_else(|| unfit("its samples are out of order"))?;
-        let dropper = match (Dropper::new(scenario), self.dropper) {
-            (None, None) => None,
-            (Some(dropper), Some(saved)) if saved.dropped <= dropper.count as u64 => {
-                let mut random = ChaCha8Rng::from_seed(saved.seed);
-                random.set_stream(saved.stream);
-                random.set_word_pos(saved.position);
-                Some(Dropper {
-                    random,
-                    dropped: saved.dropped as usize,
-                    ..dropper
-                })
-            }
-            _ => return Err(unfit("its grains to be dropped are not the scenario's")),
-        };
         if !(self.cpu_seconds >= 0.0 && self.cpu_seconds.is_finite()) {
             return Err(unfit("its processor time is none"));
         }
@@ -168,6 +156,7 @@ impl<M: Model<D>, const D: usize> SavedRun<M, D> {
                 normal: self.normal,
                 latest: self.latest,
                 log,
+                diary: None,
             },
             rain: self.rain as usize,
             simulation,
@@ -180,4 +169,48 @@ impl<M: Model<D>, const D: usize> SavedRun<M, D> {
             clock: super::ProcessorClock::start(),
         })
     }
+}
+
+impl<M: Model<D>, const D: usize> SavedRun<M, D> {
+    /// Only what moves: nothing of its files is touched.
+    pub(super) fn restore_system(
+        self,
+        scenario: &Scenario,
+        model: impl FnOnce(Cuboid<D>) -> M,
+    ) -> Result<System<M, D>, Unusable> {
+        let boundary = self.boundary(scenario)?;
+        restore_system(boundary, self.simulation, self.dropper, scenario, model)
+    }
+}
+
+/// What moves, and what is still to be dropped into it.
+type System<M, const D: usize> = (Simulation<M, D>, Option<Dropper<D>>);
+
+fn restore_system<M: Model<D>, const D: usize>(
+    boundary: Cuboid<D>,
+    simulation: SavedOf<M, D>,
+    dropper: Option<SavedDropper>,
+    scenario: &Scenario,
+    model: impl FnOnce(Cuboid<D>) -> M,
+) -> Result<System<M, D>, Unusable> {
+    let simulation = Simulation::restore(model(boundary), simulation)
+        .map_err(|error| unfit(error.to_string()))?;
+    if *simulation.settings() != scenario.settings() {
+        return Err(unfit("its settings are not those of the scenario"));
+    }
+    let dropper = match (Dropper::new(scenario), dropper) {
+        (None, None) => None,
+        (Some(dropper), Some(saved)) if saved.dropped <= dropper.count as u64 => {
+            let mut random = ChaCha8Rng::from_seed(saved.seed);
+            random.set_stream(saved.stream);
+            random.set_word_pos(saved.position);
+            Some(Dropper {
+                random,
+                dropped: saved.dropped as usize,
+                ..dropper
+            })
+        }
+        _ => return Err(unfit("its grains to be dropped are not the scenario's")),
+    };
+    Ok((simulation, dropper))
 }

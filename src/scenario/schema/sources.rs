@@ -162,6 +162,21 @@ impl Default for Drum {
     }
 }
 
+impl Drum {
+    /// About how many grains it is made of, rather too many than too few.
+    fn count(&self) -> usize {
+        let turn = 2.0 * core::f64::consts::PI;
+        let wall = turn * self.radius / self.arc_spacing * self.rings as f64;
+        let length = if self.rings == 1 {
+            1.0
+        } else {
+            self.rings as f64 * self.ring_spacing
+        };
+        // As many as are let fall: not a number counts as none.
+        (wall + 0.5 * turn * self.radius * self.radius * length) as usize
+    }
+}
+
 impl From<setup::Drum> for Drum {
     fn from(drum: setup::Drum) -> Self {
         Drum {
@@ -272,7 +287,8 @@ impl Source {
             Ok(SourceKind::Rain(rain)) => rain.count,
             Ok(SourceKind::Gas(gas)) => gas.count,
             Ok(SourceKind::OneByOne(drops)) => drops.count,
-            Ok(SourceKind::File(_) | SourceKind::Base(_) | SourceKind::Drum(_)) | Err(_) => 0,
+            Ok(SourceKind::Drum(drum)) => drum.count(),
+            Ok(SourceKind::File(_) | SourceKind::Base(_)) | Err(_) => 0,
         }
     }
 }

@@ -168,8 +168,8 @@ impl Checker<'_> {
     fn drum(&self, drum: &Drum, inside: &Path) -> Result<(), Refusal> {
         let drum_of = setup::Drum::from(*drum);
         let made = match self.scenario.dimension {
-            Dimension::Two => drum_of.wall::<2>().map(drop),
-            Dimension::Three => drum_of.wall::<3>().map(drop),
+            Dimension::Two => drum_of.validated::<2>().map(drop),
+            Dimension::Three => drum_of.validated::<3>().map(drop),
         };
         match made {
             Ok(()) => {}
@@ -187,7 +187,7 @@ impl Checker<'_> {
             self.scenario.gravity == Gravity::Down(1.0),
             || inside.clone(),
             "used with another gravity than 1",
-            "it is filled under unit gravity down the last axis",
+            "only unit gravity down the last axis is allowed: it is filled under it",
         )?;
         let volume = 4.0 * drum.radius * drum.radius * drum_of.length();
         self.require(

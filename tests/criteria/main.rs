@@ -1,7 +1,11 @@
 //! The gallery of sleep criteria: what each does, in scenes with known answers,
 //! and that none of it depends on how it is packed or interrupted.
 
+#[path = "../common/mod.rs"]
 mod common;
+
+mod compare;
+mod why;
 
 use common::{Heavy, close, heavy, periodic_laterally, rule, until, watch};
 use grainfall::boundary::Side;

@@ -1,0 +1,145 @@
+//! A run gone through again, to count false sleeps and false wakes.
+
+use serde::{Deserialize, Serialize};
+
+use crate::boundary::Cuboid;
+use crate::model::{Boundary, Dynamics, Model};
+use crate::particle::{Mode, Particle, ParticleId, Vector};
+use crate::program::criteria::{Task, continued_without_sleep};
+use crate::program::drive::{Job, Replay};
+use crate::program::error::ProgramError;
+use crate::scenario::{Gravity, Scenario, Start};
+use crate::time::Time;
+
+/// At so many instants of a run a sleep is questioned.
+const INSTANTS: u64 = 20;
+/// One that moves farther than this, in d, was not at rest, …
+const MOVED: f64 = 0.05;
+/// … within this time, in √(d/g).
+const PATIENCE: f64 = 2.0;
+/// How often one looks where it is, in √(d/g): in between it moves no farther than
+/// a hundredth of MOVED from rest.
+const LOOK_EVERY: f64 = 0.02;
+/// The most events of one continuation: those of a collapse are not followed.
+const MOST_EVENTS: u64 = 5_000_000;
+
+/// What was counted.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+pub(in crate::program) struct Census {
+    /// Sleeps that were questioned.
+    pub(in crate::program) sleeps: u64,
+    /// Those that were false.
+    pub(in crate::program) false_sleeps: u64,
+    /// All wakes.
+    pub(in crate::program) wakes: u64,
+    /// Those that were false.
+    pub(in crate::program) false_wakes: u64,
+}
+
+/// Takes the census of a run that had so many events.
+pub(in crate::program) struct TakeCensus<'a, const D: usize> {
+    pub(in crate::program) job: &'a Job,
+    pub(in crate::program) start: Start<D>,
+    pub(in crate::program) events: u64,
+}
+
+impl<const D: usize> Task<D> for TakeCensus<'_, D> {
+    type Output = Result<Census, ProgramError>;
+
+    fn run<M: Model<D>>(self, model: impl FnOnce(Cuboid<D>) -> M) -> Self::Output {
+        let boundary = self.start.boundary.clone();
+        let mut replay = Replay::new(self.job, self.start, model)?;
+        let mut census = Census::default();
+        for instant in 0..INSTANTS {
+            let share = (2 * instant + 1) as f64 / (2 * INSTANTS) as f64;
+            let at = (share * self.events as f64) as u64;
+            if !(replay.advance(Time::NEVER, at) && fall_asleep(&mut replay)) {
+                break;
+            }
+            if let Some(was_false) = question(&self.job.scenario, &boundary, &replay)? {
+                census.sleeps += 1;
+                census.false_sleeps += u64::from(was_false);
+            }
+        }
+        replay.advance(Time::NEVER, self.events);
+        let diary = replay.diary();
+        (census.wakes, census.false_wakes) = (diary.wakes, diary.false_wakes);
+        Ok(census)
+    }
+}
+
+/// On, event by event, until the next grain has fallen asleep; false if none does.
+fn fall_asleep<M: Model<D>, const D: usize>(replay: &mut Replay<M, D>) -> bool {
+    let before = replay.simulation.counts().sleep;
+    while replay.simulation.counts().sleep == before {
+        let next = replay.simulation.counts().total() + 1;
+        if !replay.advance(Time::NEVER, next) {
+            return replay.simulation.counts().sleep > before;
+        }
+    }
+    true
+}
+
+/// Whether the grain that has just fallen asleep would have gone away; `None` if
+/// that can't be found out.
+fn question<M: Model<D>, const D: usize>(
+    scenario: &Scenario,
+    boundary: &Cuboid<D>,
+    replay: &Replay<M, D>,
+) -> Result<Option<bool>, ProgramError> {
+    let Some((sleeper, lost)) = replay.diary().asleep else {
+        return Ok(None);
+    };
+    let simulation = &replay.simulation;
+    let gravity = simulation.model().dynamics().gravity(simulation.time());
+    let mut grains = simulation.snapshot();
+    let grain = &mut grains[sleeper.index()];
+    grain.mode = Mode::Normal;
+    grain.velocity = Vector::from_fn(|axis, _| lost[axis]);
+    // What turns goes on from where it is now.
+    let scenario = Scenario {
+        gravity: Gravity::Along(gravity.iter().copied().collect()),
+        ..scenario.clone()
+    };
+    let task = WatchIt {
+        scenario: &scenario,
+        grains,
+        boundary: boundary.clone(),
+        sleeper,
+    };
+    Ok(continued_without_sleep(&scenario, task))
+}
+
+/// Follows one grain while nobody falls asleep or wakes.
+struct WatchIt<'a, const D: usize> {
+    scenario: &'a Scenario,
+    grains: Vec<Particle<D>>,
+    boundary: Cuboid<D>,
+    sleeper: ParticleId,
+}
+
+impl<const D: usize> Task<D> for WatchIt<'_, D> {
+    type Output = Option<bool>;
+
+    fn run<M: Model<D>>(self, model: impl FnOnce(Cuboid<D>) -> M) -> Option<bool> {
+        let place = self.grains[self.sleeper.index()].position;
+        let model = model(self.boundary.clone());
+        let mut replay = Replay::without_end(model, self.grains, self.scenario).ok()?;
+        for look in 1.. {
+            let now = f64::from(look) * LOOK_EVERY;
+            let more = replay.advance(Time::from_units(now), MOST_EVENTS);
+            let there = replay.simulation.particle(self.sleeper).position;
+            let moved = self.boundary.displacement(&place, &there);
+            if moved.norm_squared() > MOVED * MOVED {
+                return Some(true);
+            }
+            if replay.simulation.counts().total() >= MOST_EVENTS {
+                return None;
+            }
+            if now >= PATIENCE || !more {
+                return Some(false);
+            }
+        }
+        None
+    }
+}
