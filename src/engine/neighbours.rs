@@ -228,6 +228,7 @@ impl<const D: usize> Neighbours<D> {
         }
         let speed = velocity.norm_squared().sqrt();
         let short = SHORT_LEASH * self.largest;
+        let image = self.cells.turns(particle);
         let mut list = std::mem::take(&mut self.fresh);
         loop {
             let tie = &mut self.ties[particle as usize];
@@ -256,8 +257,15 @@ impl<const D: usize> Neighbours<D> {
             tie.forget(link.seen_from(particle));
         }
         self.newcomers.clear();
+        // Filed in another image, its links mean others than before.
+        let turned = self.cells.turns(particle) != image;
+        if turned {
+            self.newcomers.extend_from_slice(&list);
+        }
         for link in list.iter().filter(|link| !link.is_in(&old)) {
-            self.newcomers.push(*link);
+            if !turned {
+                self.newcomers.push(*link);
+            }
             let tie = &mut self.ties[link.particle() as usize];
             if tie.leash > 0.0 {
                 tie.list.push(link.seen_from(particle));
