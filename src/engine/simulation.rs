@@ -113,8 +113,8 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
         &self.memories[id.index()]
     }
 
-    /// The deepest overlap of any grain with a neighbour, in d, over all events
-    /// so far: looked for among all neighbours of an event's grains.
+    /// The deepest overlap of two grains, in d, found at any event so far: of those
+    /// that collide, and of those whose next contact was asked for.
     #[must_use]
     pub fn max_overlap(&self) -> f64 {
         self.deepest

@@ -69,7 +69,7 @@ pub struct Summary {
     /// Time-weighted mean of the number of normal grains while a deposit
     /// grows, or null.
     pub mean_normal: Option<f64>,
-    /// The deepest overlap of an event's grains with their neighbours, in d.
+    /// The deepest overlap of grains that collided or were asked about, in d.
     pub max_overlap: f64,
     /// Processor time of the run, in seconds.
     pub cpu_seconds: f64,
