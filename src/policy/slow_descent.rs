@@ -266,14 +266,10 @@ impl<const D: usize> StatePolicy<D> for SlowDescent {
         {
             return Err(format!("it remembers no speed: {memory:?}"));
         }
-        let Some(asleep) = &memory.asleep else {
-            return Ok(());
-        };
-        let mode = near.particle(id).mode;
-        if mode != Mode::Frozen || asleep.since > near.time() {
-            return Err(format!("{} now, it remembers {asleep:?}", mode.name()));
+        match &memory.asleep {
+            Some(asleep) => asleep.check(near.particle(id).mode, near.time()),
+            None => Ok(()),
         }
-        Ok(())
     }
 
     fn on_start<S: Surroundings<D>>(

@@ -10,9 +10,10 @@ use crate::output::{Frame, Summary, XyzError, XyzReader};
 use crate::program::criteria::Program;
 use crate::program::error::ProgramError;
 use crate::program::load::open;
+use crate::program::reproduce::assigned;
 use crate::program::run::seed_is;
 use crate::program::sweep::{Outcome, Tasks};
-use crate::scenario::{Assignment, Origin, Scenario, read_text};
+use crate::scenario::{Origin, Scenario, read_text};
 
 /// A preset with some values changed.
 #[derive(Clone, Debug, PartialEq)]
@@ -28,13 +29,7 @@ pub(super) struct RunSpec {
 impl RunSpec {
     fn scenario(&self, program: &Program) -> Result<(Origin, Scenario), ProgramError> {
         let (_, mut origin) = open(self.preset, program)?;
-        for text in &self.set {
-            let assignment: Result<Assignment, _> = text.parse();
-            let assignment = assignment.map_err(|_| ProgramError::Reproduction {
-                what: format!("{text} is no assignment"),
-            })?;
-            origin.assignments.push(assignment);
-        }
+        origin.assignments = assigned(&self.set)?;
         origin.assignments.push(seed_is(self.seed));
         let scenario = read_text(&origin)?;
         Ok((origin, scenario))
