@@ -21,7 +21,9 @@ mod surroundings;
 
 pub use boundary::{Boundary, Period, Shape, Wall};
 pub use collision::{CollisionRule, Rebound, Spins};
-pub use dynamics::{Drift, Dynamics, Flight, Motion, PolynomialFlight, TurningFlight};
+pub use dynamics::{
+    Drift, Dynamics, Flight, GravityCourse, Motion, PolynomialFlight, TurningFlight,
+};
 pub use impact::{Impact, Obstacle};
 pub use observer::{Observer, Occurrence, OccurrenceKind};
 pub use policy::{

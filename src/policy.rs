@@ -38,5 +38,5 @@ pub use never::Never;
 pub use slow_descent::{
     Comparison, DescentRead, EnergyStore, Remembered, SlowDescent, SpeedRead, StoreAt, WakeRead,
 };
-pub use supports::{CheckDue, Phase, SelfCheck};
+pub use supports::{CheckDue, Phase, SelfCheck, Timing};
 pub use velocity_variance::{Moments, VelocityVariance};

@@ -17,7 +17,7 @@ use grainfall::model::{Model, Observer, Occurrence, OccurrenceKind, Place, Surro
 use grainfall::observe::TrajectoryHash;
 use grainfall::policy::{
     Comparison, DescentRead, EnergyStore, Phase, SelfCheck, SlowDescent, SpeedRead, StoreAt,
-    WakeRead,
+    Timing, WakeRead,
 };
 use grainfall::setup::{Sizes, seeded};
 use grainfall::{Mode, Particle, ParticleId, SetupError, Time, Vector};
@@ -332,6 +332,13 @@ fn policies() -> Vec<SlowDescent> {
             comparison: Comparison::None,
             wall_supports: true,
             ..SlowDescent::with_threshold(0.05)
+        },
+        SlowDescent {
+            self_check: Some(SelfCheck {
+                timing: Timing::Events,
+                ..SelfCheck::default()
+            }),
+            ..base
         },
     ]
 }

@@ -134,6 +134,7 @@ fn policy(parameters: &Value) -> SlowDescent {
                 Phase::Own
             },
             unsupported_wakes: false,
+            ..SelfCheck::default()
         }),
         keep_history: !flag("reset_history_on_sleep", true),
         ..SlowDescent::default()

@@ -92,6 +92,7 @@ fn a_deposition_leaves_a_folder() {
                 "wake",
                 "sleep",
                 "check",
+                "support",
                 "check_wake",
                 "wall",
                 "transfer",

@@ -1,5 +1,5 @@
 use crate::dynamics::Straight;
-use crate::model::{Dynamics, Motion};
+use crate::model::{Dynamics, GravityCourse, Motion};
 use crate::particle::Vector;
 use crate::time::Time;
 
@@ -20,5 +20,9 @@ impl<const D: usize> Dynamics<D> for ForceFree {
 
     fn gravity(&self, _time: Time) -> Vector<D> {
         Vector::zeros()
+    }
+
+    fn gravity_course(&self) -> GravityCourse {
+        GravityCourse::Constant
     }
 }

@@ -1,5 +1,5 @@
 use crate::error::SetupError;
-use crate::model::{Dynamics, Motion};
+use crate::model::{Dynamics, GravityCourse, Motion};
 use crate::particle::Vector;
 use crate::time::Time;
 
@@ -36,6 +36,10 @@ impl<const D: usize, Y: Dynamics<D>> Dynamics<D> for Growing<Y> {
 
     fn ground_velocity(&self, position: &Vector<D>, time: Time) -> Vector<D> {
         self.inner.ground_velocity(position, time)
+    }
+
+    fn gravity_course(&self) -> GravityCourse {
+        self.inner.gravity_course()
     }
 
     fn validate(&self) -> Result<(), SetupError> {

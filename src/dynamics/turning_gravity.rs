@@ -1,6 +1,6 @@
 use crate::dynamics::trochoid::{Pull, Trochoid};
 use crate::error::SetupError;
-use crate::model::{Dynamics, Motion};
+use crate::model::{Dynamics, GravityCourse, Motion};
 use crate::particle::{Mode, Vector};
 use crate::time::Time;
 
@@ -156,6 +156,14 @@ impl<const D: usize> Dynamics<D> for TurningGravity<D> {
 
     fn gravity(&self, time: Time) -> Vector<D> {
         self.steady() + self.turning(time)
+    }
+
+    fn gravity_course(&self) -> GravityCourse {
+        let (rate, plane) = (self.rate, self.plane);
+        match self.step {
+            None => GravityCourse::Turning { rate, plane },
+            Some(step) => GravityCourse::Stepped { rate, plane, step },
+        }
     }
 
     fn validate(&self) -> Result<(), SetupError> {

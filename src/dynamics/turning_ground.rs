@@ -1,7 +1,7 @@
 use crate::dynamics::trochoid::{Pull, Trochoid};
 use crate::dynamics::turning_gravity::check_turning;
 use crate::error::SetupError;
-use crate::model::{Dynamics, Motion};
+use crate::model::{Dynamics, GravityCourse, Motion};
 use crate::particle::{Mode, Vector};
 use crate::time::Time;
 
@@ -85,6 +85,14 @@ impl<const D: usize> Dynamics<D> for TurningGround<D> {
         velocity[from] = -self.rate * radius[to];
         velocity[to] = self.rate * radius[from];
         velocity
+    }
+
+    /// Seen from the ground, gravity turns the other way.
+    fn gravity_course(&self) -> GravityCourse {
+        GravityCourse::Turning {
+            rate: -self.rate,
+            plane: self.plane,
+        }
     }
 
     fn validate(&self) -> Result<(), SetupError> {

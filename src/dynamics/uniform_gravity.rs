@@ -1,6 +1,6 @@
 use crate::dynamics::Parabola;
 use crate::error::SetupError;
-use crate::model::{Dynamics, Motion};
+use crate::model::{Dynamics, GravityCourse, Motion};
 use crate::particle::{Mode, Vector};
 use crate::time::Time;
 
@@ -55,5 +55,9 @@ impl<const D: usize> Dynamics<D> for UniformGravity<D> {
 
     fn gravity(&self, _time: Time) -> Vector<D> {
         self.gravity
+    }
+
+    fn gravity_course(&self) -> GravityCourse {
+        GravityCourse::Constant
     }
 }

@@ -345,6 +345,7 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
         self.slots[particle as usize] = Slot::EMPTY;
         self.tie_if_moving(particle);
         self.note_speed(particle);
+        self.tell_dependants(particle);
     }
 
     /// Reports, and predicts anew, the grains that the end of a cascade has

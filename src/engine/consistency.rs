@@ -170,6 +170,7 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
             ));
         }
         self.queue.check_entry(particle)?;
+        self.leaning.check(particle, body.mode == Mode::Frozen)?;
         let position = flight.position(now - body.since);
         if !flight.is_at_rest() && !self.world.near.is_tied(particle) {
             return Err(format!("grain {particle} moves without a list"));

@@ -15,7 +15,10 @@ pub struct Counts {
     pub sleep: u64,
     /// Events of the policy's own, such as self-checks, that were carried out.
     pub check: u64,
-    /// Those of them that woke a grain.
+    /// Times the policy was asked about a sleeper since a grain that it leans on
+    /// had changed.
+    pub support: u64,
+    /// Times that the answer to one of both woke a grain.
     pub check_wake: u64,
     /// Collisions with walls.
     pub wall: u64,

@@ -6,6 +6,7 @@ use crate::engine::queue::{Key, Rank};
 use crate::engine::settings::{Limits, StopReason};
 use crate::engine::simulation::Simulation;
 use crate::engine::slot::Partner;
+use crate::engine::transitions::Call;
 use crate::model::{Flight, Model, Observer};
 use crate::particle::ParticleId;
 use crate::time::Time;
@@ -59,7 +60,13 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
             match source {
                 Source::Policy => {
                     if let Some(Reverse(alarm)) = self.alarms.pop() {
-                        self.policy_event(alarm.key.low, alarm.event, observer);
+                        let particle = alarm.key.low;
+                        match alarm.call {
+                            Call::Asked(event) => self.policy_event(particle, event, observer),
+                            Call::SupportChanged(supporter) => {
+                                self.support_changed(particle, supporter, alarm.order, observer);
+                            }
+                        }
                     }
                 }
                 Source::Particle(particle) => self.carry_out(particle, key, observer),

@@ -15,6 +15,7 @@ use crate::engine::consistency::Vigil;
 use crate::engine::counts::{Counts, ModeCounts};
 use crate::engine::glances::Glances;
 use crate::engine::guards::Traces;
+use crate::engine::leaning::{Edge, Leaning};
 use crate::engine::ledger::Ledger;
 use crate::engine::neighbours::{Neighbours, SavedNeighbours};
 use crate::engine::queue::{EventQueue, Rank};
@@ -22,7 +23,7 @@ use crate::engine::settings::{Collapse, Settings};
 use crate::engine::setup::check_parts;
 use crate::engine::simulation::{Simulation, listed_scale};
 use crate::engine::slot::{Partner, Slot};
-use crate::engine::transitions::Alarm;
+use crate::engine::transitions::{Alarm, Call};
 use crate::error::SetupError;
 use crate::model::{Boundary, Commands, Dynamics, EventOf, Flight, MemoryOf, Model, SpinOf};
 use crate::particle::ParticleId;
@@ -49,6 +50,7 @@ pub struct Saved<R, E, S, const D: usize> {
     /// In the order in which they are due.
     alarms: Vec<Alarm<E>>,
     alarm_count: u64,
+    leaning: Vec<Vec<Edge>>,
     traces: Traces,
     near: SavedNeighbours<D>,
     largest: f64,
@@ -105,6 +107,7 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
             slots: self.slots.clone(),
             alarms,
             alarm_count: self.alarm_count,
+            leaning: self.leaning.save(),
             traces: self.traces.clone(),
             near: self.world.near.save(),
             largest: self.world.largest,
@@ -170,6 +173,7 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
             queue,
             alarms: saved.alarms.into_iter().map(Reverse).collect(),
             alarm_count: saved.alarm_count,
+            leaning: Leaning::restore(saved.leaning, count).map_err(wrong)?,
             traces: saved.traces,
             counts: saved.counts,
             deepest: saved.deepest,
@@ -249,6 +253,7 @@ impl<R, E, S, const D: usize> Saved<R, E, S, D> {
                 || key.high != key.low
                 || key.time < self.clock
                 || !key.time.is_finite()
+                || matches!(alarm.call, Call::SupportChanged(id) if id as usize >= count)
             {
                 return Err(wrong("an event of the policy that cannot be"));
             }
@@ -279,6 +284,7 @@ impl<R, E, S, const D: usize> Saved<R, E, S, D> {
             counts.sleep,
             counts.check,
             counts.check_wake,
+            counts.support,
             counts.wall,
             counts.transfer,
             counts.elastic,

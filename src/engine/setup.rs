@@ -7,17 +7,19 @@ use crate::engine::consistency::Vigil;
 use crate::engine::counts::{Counts, ModeCounts};
 use crate::engine::glances::Glances;
 use crate::engine::guards::Traces;
+use crate::engine::leaning::Leaning;
 use crate::engine::ledger::{Entry, Ledger};
 use crate::engine::neighbours::Neighbours;
 use crate::engine::queue::EventQueue;
 use crate::engine::settings::Settings;
 use crate::engine::simulation::Simulation;
-use crate::engine::slot::Slot;
+use crate::engine::slot::{Partner, Slot};
 use crate::error::SetupError;
 use crate::model::{
-    Boundary, CollisionRule, Commands, Dynamics, Flight, MemoryOf, Model, SpinOf, StatePolicy, Wall,
+    Boundary, CollisionRule, Commands, Dynamics, Flight, MemoryOf, Model, SpinOf, StatePolicy,
+    WakeCause, Wall,
 };
-use crate::particle::{Mode, Particle, ParticleId, WallId};
+use crate::particle::{Mode, Particle, ParticleId, Vector, WallId};
 use crate::time::Time;
 
 /// Overlap that is taken for rounding of the input, in d.
@@ -95,6 +97,7 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
             queue: EventQueue::new(count, settings.start),
             alarms: BinaryHeap::new(),
             alarm_count: 0,
+            leaning: Leaning::default(),
             traces: Traces::new(&settings.guards),
             counts: Counts::default(),
             deepest: 0.0,
@@ -173,6 +176,62 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
         Ok(id)
     }
 
+    /// Sets a static grain free now: it is normal from here on, with this velocity,
+    /// in √(gd). So a wall of fixed grains is taken away, or a support knocked out.
+    /// Whoever leans on it is told at this instant. Energy that a fixed grain
+    /// brings along counts as inserted, what a frozen one is given as given back.
+    ///
+    /// # Errors
+    ///
+    /// [`SetupError`] if there is no such grain or it is mobile, if the velocity is
+    /// out of range, or if the grain overlaps another, as fixed ones may among
+    /// themselves, or a wall. The simulation is then unchanged.
+    pub fn set_free(&mut self, id: ParticleId, velocity: Vector<D>) -> Result<(), SetupError> {
+        let refuse = |field, value, allowed| {
+            Err(SetupError::Particle {
+                id,
+                field,
+                value,
+                allowed,
+            })
+        };
+        let count = self.world.bodies.len();
+        if id.index() >= count {
+            return refuse("id", f64::from(id.0), "one of the grains that are there");
+        }
+        let (particle, was) = (id.0, self.world.bodies[id.index()].mode);
+        if was.is_mobile() {
+            let allowed = "a grain that is frozen or fixed is set free, not one that is free";
+            return refuse("mode", was as u8 as f64, allowed);
+        }
+        let before = self.world.particle_now(&self.model, particle);
+        let free = Particle {
+            velocity,
+            mode: Mode::Normal,
+            ..before
+        };
+        validate(id, &free)?;
+        // A normal grain may overlap none.
+        self.refuse_contacts_of(particle, &free)?;
+        let (model, place) = (&self.model, before.position);
+        self.world
+            .write(model, particle, place, velocity, Mode::Normal);
+        if was == Mode::Fixed {
+            let energy = self.energy_of(&self.particle(id));
+            self.world.ledger.add(Entry::Inserted, energy);
+        } else {
+            self.world
+                .note_change(Entry::GivenBack, particle, &before.velocity, &velocity);
+        }
+        self.traces[id.index()].partner = Partner::Nobody;
+        self.tie_if_moving(particle);
+        self.note_speed(particle);
+        self.tell_woken(particle, &WakeCause::Event);
+        self.tell_dependants(particle);
+        self.predict(particle);
+        Ok(())
+    }
+
     /// Stores a grain's state, wrapped into the primary cell.
     fn store(&mut self, particle: Particle<D>) {
         let scale = scale_at::<M, D>(&self.model, self.world.clock);
@@ -212,8 +271,13 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
 
     /// Refuses a grain that overlaps another or reaches into a wall.
     fn refuse_contacts(&self, particle: u32) -> Result<(), SetupError> {
-        let now = self.world.clock;
         let one = self.world.particle_now(&self.model, particle);
+        self.refuse_contacts_of(particle, &one)
+    }
+
+    /// The same for a grain as it would be now.
+    fn refuse_contacts_of(&self, particle: u32, one: &Particle<D>) -> Result<(), SetupError> {
+        let now = self.world.clock;
         for (place, wall) in self.model.boundary().walls().iter().enumerate() {
             let depth = one.radius() - wall.distance(&one.position, now);
             if depth > TOLERANCE {
@@ -235,7 +299,7 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
                 if one.mode == Mode::Fixed && other.mode == Mode::Fixed {
                     return;
                 }
-                let apart = self.world.displacement(&self.model, &one, &other).norm();
+                let apart = self.world.displacement(&self.model, one, &other).norm();
                 let depth = 0.5 * (one.diameter + other.diameter) - apart;
                 if depth > TOLERANCE && deepest.is_none_or(|(so_far, _)| depth > so_far) {
                     deepest = Some((depth, found.particle));

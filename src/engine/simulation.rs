@@ -8,6 +8,7 @@ use crate::engine::cells::Found;
 use crate::engine::consistency::Vigil;
 use crate::engine::counts::{Counts, ModeCounts};
 use crate::engine::guards::Traces;
+use crate::engine::leaning::Leaning;
 use crate::engine::neighbours::Neighbours;
 use crate::engine::queue::EventQueue;
 use crate::engine::settings::{Collapse, Settings};
@@ -30,6 +31,7 @@ pub struct Simulation<M: Model<D>, const D: usize> {
     pub(super) queue: EventQueue,
     pub(super) alarms: BinaryHeap<Reverse<Alarm<EventOf<M, D>>>>,
     pub(super) alarm_count: u64,
+    pub(super) leaning: Leaning,
     pub(super) traces: Traces,
     pub(super) counts: Counts,
     /// Events up to the start of the present epoch.

@@ -16,14 +16,23 @@ use crate::model::{
 };
 use crate::particle::{Mode, ParticleId, Vector};
 
-/// An event that the policy has asked for.
+/// Why the policy is asked about a grain.
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
+pub(super) enum Call<E> {
+    /// It has asked for this event.
+    Asked(E),
+    /// A grain that this one leans on has changed.
+    SupportChanged(u32),
+}
+
+/// The policy is to be asked about a grain.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
 pub(super) struct Alarm<E> {
     pub(super) key: Key,
     /// Tells apart what was asked for one grain and one instant: first asked,
     /// first served.
     pub(super) order: u64,
-    pub(super) event: E,
+    pub(super) call: Call<E>,
 }
 
 impl<E> PartialEq for Alarm<E> {
@@ -76,6 +85,7 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
         // Ground that moves may be faster than the grain was.
         self.note_speed(particle);
         self.schedule();
+        self.tell_dependants(particle);
         self.counts.sleep += 1;
         self.report(
             &Occurrence {
@@ -110,6 +120,7 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
 
     /// The policy hears that a grain has woken.
     pub(super) fn tell_woken(&mut self, particle: u32, cause: &WakeCause<D>) {
+        self.let_go(particle);
         self.model.state_policy().on_wake(
             ParticleId(particle),
             cause,
@@ -138,7 +149,8 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
     }
 
     /// Files what the policy has asked for.
-    fn schedule(&mut self) {
+    pub(super) fn schedule(&mut self) {
+        self.lean();
         let known = self.world.bodies.len() as u32;
         let now = self.world.clock;
         for (id, after, event) in self.commands.drain() {
@@ -155,7 +167,7 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
                     high: id.0,
                 },
                 order: self.alarm_count,
-                event,
+                call: Call::Asked(event),
             }));
         }
     }
@@ -178,18 +190,26 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
             &mut self.commands,
         );
         self.schedule();
+        self.counts.check += u64::from(!matches!(response, Response::Ignore));
+        self.carry_out_response(particle, response, observer);
+    }
+
+    /// Does what the policy has answered about a grain.
+    pub(super) fn carry_out_response<O: Observer<D>>(
+        &mut self,
+        particle: u32,
+        response: Response<D>,
+        observer: &mut O,
+    ) {
         let mode = self.world.bodies[particle as usize].mode;
         match response {
-            Response::Ignore => {}
-            Response::Keep => self.counts.check += 1,
+            Response::Ignore | Response::Keep => {}
             Response::Sleep(reason) => {
-                self.counts.check += 1;
                 if mode.is_mobile() {
                     self.fall_asleep(particle, Some(reason), observer);
                 }
             }
             Response::Wake(waking, reason) => {
-                self.counts.check += 1;
                 if mode == Mode::Frozen {
                     self.wake_up(particle, &waking, reason, observer);
                 }
@@ -220,6 +240,7 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
         self.note_speed(particle);
         self.counts.check_wake += 1;
         self.tell_woken(particle, &WakeCause::Event);
+        self.tell_dependants(particle);
         self.report(
             &Occurrence {
                 time: self.world.clock,

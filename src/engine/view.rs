@@ -1,5 +1,7 @@
 use crate::engine::body::World;
-use crate::model::{Boundary, Dynamics, Model, NearWall, Neighbour, Surroundings, Wall};
+use crate::model::{
+    Boundary, Dynamics, GravityCourse, Model, NearWall, Neighbour, Shape, Surroundings, Wall,
+};
 use crate::particle::{Particle, ParticleId, Vector, WallId};
 use crate::time::Time;
 
@@ -16,6 +18,10 @@ impl<M: Model<D>, const D: usize> Surroundings<D> for View<'_, M, D> {
 
     fn gravity(&self) -> Vector<D> {
         self.model.dynamics().gravity(self.world.clock)
+    }
+
+    fn gravity_course(&self) -> GravityCourse {
+        self.model.dynamics().gravity_course()
     }
 
     fn ground_velocity(&self, id: ParticleId) -> Vector<D> {
@@ -53,6 +59,10 @@ impl<M: Model<D>, const D: usize> Surroundings<D> for View<'_, M, D> {
         });
     }
 
+    fn stays_near(&self, one: ParticleId, other: ParticleId, range: f64) -> f64 {
+        self.world.stays_near(self.model, one.0, other.0, range)
+    }
+
     fn for_each_wall(&self, of: ParticleId, gap: f64, mut visit: impl FnMut(NearWall<D>)) {
         let centre = self.particle(of);
         let now = self.world.clock;
@@ -63,6 +73,10 @@ impl<M: Model<D>, const D: usize> Surroundings<D> for View<'_, M, D> {
                     id: WallId(place as u16),
                     normal: wall.normal(&centre.position, now),
                     gap: this,
+                    speed: match wall.shape() {
+                        Shape::Plane { .. } => 0.0,
+                        Shape::General { speed, .. } => speed,
+                    },
                 });
             }
         }

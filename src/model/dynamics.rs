@@ -111,6 +111,34 @@ pub trait TurningFlight<const D: usize>: Flight<D> {
     fn accelerates_like(&self, other: &Self) -> bool;
 }
 
+/// How the direction of gravity changes as seen from the ground, on which static
+/// grains rest: what a policy needs to tell when a support is none any more.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum GravityCourse {
+    /// It does not.
+    Constant,
+    /// It turns at a constant rate in the plane of two axes; what it has along
+    /// other axes stays.
+    Turning {
+        /// How fast, in radians per √(d/g).
+        rate: f64,
+        /// From the first of these axes to the second.
+        plane: [usize; 2],
+    },
+    /// It turns at once at each multiple of a time, by as much as it would have
+    /// in that time.
+    Stepped {
+        /// How fast on the whole, in radians per √(d/g).
+        rate: f64,
+        /// From the first of these axes to the second.
+        plane: [usize; 2],
+        /// The time from step to step, in √(d/g).
+        step: f64,
+    },
+    /// Nobody says.
+    Unknown,
+}
+
 /// How grains fly: the equation of motion between collisions.
 ///
 /// The generic type names are: `D` the dimension.
@@ -137,6 +165,15 @@ pub trait Dynamics<const D: usize> {
     /// frozen grains have it, and thresholds are relative to it.
     fn ground_velocity(&self, _position: &Vector<D>, _time: Time) -> Vector<D> {
         Vector::zeros()
+    }
+
+    /// How gravity changes as seen from the ground. To say anything but
+    /// [`GravityCourse::Unknown`], which is provided, is to promise two things:
+    /// that gravity does so, and that static grains whose velocity is
+    /// [`ground_velocity`](Dynamics::ground_velocity) keep it, so that they stay
+    /// where they are in the ground.
+    fn gravity_course(&self) -> GravityCourse {
+        GravityCourse::Unknown
     }
 
     /// Refuses parameters that are out of range; asked once, before a

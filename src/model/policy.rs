@@ -126,12 +126,14 @@ pub enum Response<const D: usize> {
 #[derive(Clone, Debug)]
 pub struct Commands<E> {
     scheduled: Vec<(ParticleId, f64, E)>,
+    leaning: Vec<(ParticleId, ParticleId)>,
 }
 
 impl<E> Default for Commands<E> {
     fn default() -> Self {
         Commands {
             scheduled: Vec::new(),
+            leaning: Vec::new(),
         }
     }
 }
@@ -144,7 +146,21 @@ impl<E> Commands<E> {
         self.scheduled.push((id, after, event));
     }
 
-    /// What has been asked for, in order; empties the list.
+    /// Lets a grain that sleeps, or falls asleep now, lean on another: from now
+    /// on until it wakes, [`StatePolicy::on_support_change`] is asked for `id`
+    /// at each instant at which `supporter` changes, that is, wakes, falls
+    /// asleep, collides, is disturbed by a guard or set free. A grain that flies
+    /// on or lies still does not change. To ask twice is to ask once.
+    pub fn lean_on(&mut self, id: ParticleId, supporter: ParticleId) {
+        self.leaning.push((id, supporter));
+    }
+
+    /// Who is to lean on whom, in order; empties the list.
+    pub fn drain_leaning(&mut self) -> impl Iterator<Item = (ParticleId, ParticleId)> + '_ {
+        self.leaning.drain(..)
+    }
+
+    /// The events that have been asked for, in order; empties the list.
     pub fn drain(&mut self) -> impl Iterator<Item = (ParticleId, f64, E)> + '_ {
         self.scheduled.drain(..)
     }
@@ -152,7 +168,7 @@ impl<E> Commands<E> {
     /// Nothing has been asked for.
     #[must_use]
     pub fn is_empty(&self) -> bool {
-        self.scheduled.is_empty()
+        self.scheduled.is_empty() && self.leaning.is_empty()
     }
 }
 
@@ -269,6 +285,23 @@ pub trait StatePolicy<const D: usize> {
         &self,
         _id: ParticleId,
         _event: Self::Event,
+        _near: &S,
+        _memory: &mut Self::Memory,
+        _commands: &mut Commands<Self::Event>,
+    ) -> Response<D> {
+        Response::Ignore
+    }
+
+    /// A grain that the sleeper `id` leans on ([`Commands::lean_on`]) has changed
+    /// at this instant. Nothing is asked unless the policy has let sleepers lean.
+    ///
+    /// It is asked after all collisions of the instant. If several sleepers are
+    /// concerned they are asked by id, the smallest first; who wakes is a change
+    /// for those that lean on it, who are then asked at the same instant.
+    fn on_support_change<S: Surroundings<D>>(
+        &self,
+        _id: ParticleId,
+        _supporter: ParticleId,
         _near: &S,
         _memory: &mut Self::Memory,
         _commands: &mut Commands<Self::Event>,

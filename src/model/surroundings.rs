@@ -1,5 +1,6 @@
 //! What a policy may see of the world at an event.
 
+use crate::model::GravityCourse;
 use crate::particle::{Mode, Particle, ParticleId, Vector, WallId};
 use crate::time::Time;
 
@@ -25,6 +26,8 @@ pub struct NearWall<const D: usize> {
     pub normal: Vector<D>,
     /// Gap between the wall and the grain's surface, in d.
     pub gap: f64,
+    /// A bound on how fast the wall moves, in √(gd); 0 if it is at rest.
+    pub speed: f64,
 }
 
 /// The world around an event, all at the event's time. Reading it changes
@@ -38,6 +41,9 @@ pub trait Surroundings<const D: usize> {
     /// Gravity now, in g.
     fn gravity(&self) -> Vector<D>;
 
+    /// How gravity changes from now on, as seen from the ground.
+    fn gravity_course(&self) -> GravityCourse;
+
     /// Velocity of what counts as at rest where a grain is, in √(gd).
     fn ground_velocity(&self, id: ParticleId) -> Vector<D>;
 
@@ -50,6 +56,14 @@ pub trait Surroundings<const D: usize> {
     /// Calls `visit` for every grain whose centre is nearer to the one of `of`
     /// than `range` times their distance at contact, in no stated order.
     fn for_each_neighbour(&self, of: ParticleId, range: f64, visit: impl FnMut(Neighbour<D>));
+
+    /// How long the centres of two grains certainly stay nearer to each other
+    /// than `range` times their distance at contact, in √(d/g), if both go on as
+    /// they do now: 0 if they are farther apart already, or nearer than that
+    /// distance by no more than 10⁻¹³ of it. It may be too short, but short
+    /// times are told well: to ask again at the end of the time tells, after a
+    /// few times, the instant at which the distance is reached.
+    fn stays_near(&self, one: ParticleId, other: ParticleId, range: f64) -> f64;
 
     /// Calls `visit` for every wall nearer than `gap` to the surface of `of`.
     fn for_each_wall(&self, of: ParticleId, gap: f64, visit: impl FnMut(NearWall<D>));

@@ -117,7 +117,9 @@ pub struct EventCounts {
     pub sleep: u64,
     /// Self-checks made.
     pub check: u64,
-    /// Self-checks that woke a grain.
+    /// Times a sleeper was asked since a grain that it leans on had changed.
+    pub support: u64,
+    /// Of both, those that woke a grain.
     pub check_wake: u64,
     /// Collisions with walls.
     pub wall: u64,
@@ -138,6 +140,7 @@ impl From<&Counts> for EventCounts {
             wake: counts.wake,
             sleep: counts.sleep,
             check: counts.check,
+            support: counts.support,
             check_wake: counts.check_wake,
             wall: counts.wall,
             transfer: counts.transfer,

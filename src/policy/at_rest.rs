@@ -243,4 +243,29 @@ impl<const D: usize, C: RestCondition<D>> StatePolicy<D> for AtRest<C> {
             }
         }
     }
+
+    fn on_support_change<S: Surroundings<D>>(
+        &self,
+        id: ParticleId,
+        supporter: ParticleId,
+        near: &S,
+        memory: &mut Self::Memory,
+        commands: &mut Commands<CheckDue>,
+    ) -> Response<D> {
+        let Some(check) = &self.self_check else {
+            return Response::Ignore;
+        };
+        let grain = near.particle(id);
+        if grain.mode != Mode::Frozen {
+            return Response::Ignore;
+        }
+        let walls = self.wall_supports;
+        let supports = &mut memory.supports;
+        match supports.changed(check, walls, id, supporter, near, commands) {
+            Ok(()) => Response::Keep,
+            Err(reason) => {
+                Response::Wake(self.given_back(memory, near.time(), grain.velocity), reason)
+            }
+        }
+    }
 }

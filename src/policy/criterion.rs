@@ -253,4 +253,20 @@ impl<const D: usize> StatePolicy<D> for Criterion {
             Response::Ignore
         )
     }
+
+    fn on_support_change<S: Surroundings<D>>(
+        &self,
+        id: ParticleId,
+        supporter: ParticleId,
+        near: &S,
+        memory: &mut CriterionMemory<D>,
+        commands: &mut Commands<CheckDue>,
+    ) -> Response<D> {
+        each!(
+            self,
+            memory.with_mut,
+            |policy, slot| policy.on_support_change(id, supporter, near, slot, commands),
+            Response::Ignore
+        )
+    }
 }

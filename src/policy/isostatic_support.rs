@@ -167,4 +167,16 @@ impl<const D: usize> StatePolicy<D> for IsostaticSupport {
     ) -> Response<D> {
         self.descent.on_event(id, event, near, memory, commands)
     }
+
+    fn on_support_change<S: Surroundings<D>>(
+        &self,
+        id: ParticleId,
+        supporter: ParticleId,
+        near: &S,
+        memory: &mut Remembered<D>,
+        commands: &mut Commands<CheckDue>,
+    ) -> Response<D> {
+        self.descent
+            .on_support_change(id, supporter, near, memory, commands)
+    }
 }

@@ -363,4 +363,32 @@ impl<const D: usize> StatePolicy<D> for SlowDescent {
             }
         }
     }
+
+    fn on_support_change<S: Surroundings<D>>(
+        &self,
+        id: ParticleId,
+        supporter: ParticleId,
+        near: &S,
+        memory: &mut Remembered<D>,
+        commands: &mut Commands<CheckDue>,
+    ) -> Response<D> {
+        let Some(check) = &self.self_check else {
+            return Response::Ignore;
+        };
+        let grain = near.particle(id);
+        if grain.mode != Mode::Frozen {
+            return Response::Ignore;
+        }
+        let walls = self.wall_supports;
+        let supports = &mut memory.supports;
+        match supports.changed(check, walls, id, supporter, near, commands) {
+            Ok(()) => Response::Keep,
+            Err(reason) => {
+                let gravity = near.gravity();
+                let ground = grain.velocity;
+                let waking = self.given_back(memory, near.time(), &gravity, ground, grain.mass);
+                Response::Wake(waking, reason)
+            }
+        }
+    }
 }

@@ -1,17 +1,26 @@
 //! The paper's self-check (section 4): are those that held a grain up still
 //! there?
 
+mod ahead;
+
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
 use serde::{Deserialize, Serialize};
 
 use crate::error::SetupError;
+#[cfg(doc)]
+use crate::model::GravityCourse;
 use crate::model::{Commands, Reason, Surroundings};
-use crate::particle::{Mode, ParticleId};
+use crate::particle::{Mode, ParticleId, Vector};
 use crate::time::Time;
 
 /// A wall within this gap below a grain supports it, in d.
 pub(super) const WALL_RANGE: f64 = 0.05;
+
+/// With events: how little, in cosines and in distances at contact, a support has
+/// to be below, or within range, to be none. So at the foreseen instant, which is
+/// rounded, the check finds what was foreseen.
+const EDGE: f64 = 1.0e-12;
 
 /// When grains check.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -30,9 +39,27 @@ pub enum Phase {
     Global,
 }
 
+/// What has sleepers check.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[cfg_attr(feature = "program", derive(schemars::JsonSchema))]
+#[serde(rename_all = "snake_case")]
+pub enum Timing {
+    /// The clock: every τ_check, as in the paper.
+    #[default]
+    Polled,
+    /// What happens: a sleeper checks at the instant at which a support changes
+    /// or gravity leaves it, which is foreseen. That is what the clock tends to
+    /// as τ_check → 0. The clock stays where nothing can be foreseen: where the
+    /// dynamics does not say how gravity changes
+    /// ([`GravityCourse::Unknown`]), or fixed grains or walls that support move.
+    Events,
+}
+
 /// The self-check of supports.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SelfCheck {
+    /// What has sleepers check.
+    pub timing: Timing,
     /// τ_check, in √(d/g).
     pub interval: f64,
     /// Grains nearer than this times their distance at contact may be supports;
@@ -50,6 +77,7 @@ impl Default for SelfCheck {
     /// The paper's: every 0.1 √(d/g), neighbours nearer than 1.05.
     fn default() -> Self {
         SelfCheck {
+            timing: Timing::Polled,
             interval: 0.1,
             support_range: 1.05,
             support_normals: true,
@@ -77,6 +105,45 @@ impl SelfCheck {
             });
         }
         Ok(())
+    }
+
+    /// Within how many distances at contact supports are looked for.
+    fn range(&self) -> f64 {
+        match self.timing {
+            Timing::Polled => self.support_range,
+            Timing::Events => self.support_range - EDGE,
+        }
+    }
+
+    /// The cosine, of the angle between gravity and the way to a support, that it
+    /// has to exceed to be below.
+    fn least_cosine(&self) -> f64 {
+        match self.timing {
+            Timing::Polled => 0.0,
+            Timing::Events => EDGE,
+        }
+    }
+
+    /// Whether what lies at `offset` from a grain is below it.
+    fn is_below<const D: usize>(&self, offset: &Vector<D>, gravity: &Vector<D>) -> bool {
+        let lower = offset.dot(gravity);
+        match self.timing {
+            Timing::Polled => lower > 0.0,
+            Timing::Events => {
+                let sizes = offset.norm_squared() * gravity.norm_squared();
+                lower > self.least_cosine() * sizes.sqrt()
+            }
+        }
+    }
+
+    /// How many walls are below a grain.
+    fn walls_below<const D: usize, S: Surroundings<D>>(&self, id: ParticleId, near: &S) -> u32 {
+        let gravity = near.gravity();
+        let mut count = 0;
+        near.for_each_wall(id, WALL_RANGE, |wall| {
+            count += u32::from(self.is_below(&-wall.normal, &gravity));
+        });
+        count
     }
 
     /// How long until the first check of a grain that starts frozen.
@@ -108,38 +175,45 @@ impl SelfCheck {
     }
 }
 
-/// The event "grain, check yourself". It carries the number of the sleep it was
-/// made in, so that it is void after a waking.
+/// The event "grain, check yourself". It carries the number under which it was
+/// asked for, so that it is void after a waking.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct CheckDue {
-    sleep: u32,
+    number: u32,
 }
 
 /// Who held a grain up when it fell asleep.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(super) struct Supports {
-    /// Counts the sleeps.
-    sleep: u32,
+    /// Counts the sleeps and, with events, the checks asked for.
+    number: u32,
     /// Frozen or fixed grains below.
     below: Vec<ParticleId>,
     /// Normal grains above.
     above: Vec<ParticleId>,
     /// Number of walls below.
     walls: u32,
+    /// With events: when the next check is due.
+    due: Option<Time>,
+    /// With events: when nobody held it for the last time.
+    unsupported: Option<Time>,
 }
 
 impl Supports {
     fn next_check(&self) -> CheckDue {
-        CheckDue { sleep: self.sleep }
+        CheckDue {
+            number: self.number,
+        }
     }
 
     pub(super) fn is_current(&self, event: CheckDue) -> bool {
-        event.sleep == self.sleep
+        event.number == self.number
     }
 
     /// Forgets them, and makes checks that are still due void.
     pub(super) fn forget(&mut self) {
-        self.sleep = self.sleep.wrapping_add(1);
+        self.number = self.number.wrapping_add(1);
+        self.due = None;
         self.below.clear();
         self.above.clear();
         self.walls = 0;
@@ -156,20 +230,22 @@ impl Supports {
         self.forget();
         let gravity = near.gravity();
         let (below, above) = (&mut self.below, &mut self.above);
-        near.for_each_neighbour(id, check.support_range, |other| {
-            let lower = other.offset.dot(&gravity);
+        near.for_each_neighbour(id, check.range(), |other| {
             if other.mode.is_static() {
-                if lower > 0.0 {
+                if check.is_below(&other.offset, &gravity) {
                     below.push(other.id);
                 }
-            } else if check.support_normals && other.mode == Mode::Normal && lower < 0.0 {
+            } else if check.support_normals
+                && other.mode == Mode::Normal
+                && other.offset.dot(&gravity) < 0.0
+            {
                 above.push(other.id);
             }
         });
         below.sort_unstable();
         above.sort_unstable();
         if walls_count {
-            self.walls = walls_below(id, near);
+            self.walls = check.walls_below(id, near);
         }
     }
 
@@ -184,8 +260,13 @@ impl Supports {
         commands: &mut Commands<CheckDue>,
     ) {
         self.record(check, walls_count, id, near);
-        let wait = check.first_wait(id, near.time());
-        commands.schedule(id, wait, self.next_check());
+        match check.timing {
+            Timing::Polled => {
+                let wait = check.first_wait(id, near.time());
+                commands.schedule(id, wait, self.next_check());
+            }
+            Timing::Events => self.settle_down(check, walls_count, id, near, commands),
+        }
     }
 
     /// The same for one that falls asleep now.
@@ -198,20 +279,31 @@ impl Supports {
         commands: &mut Commands<CheckDue>,
     ) {
         self.record(check, walls_count, id, near);
-        commands.schedule(id, check.wait(near.time()), self.next_check());
+        match check.timing {
+            Timing::Polled => {
+                commands.schedule(id, check.wait(near.time()), self.next_check());
+            }
+            Timing::Events => self.settle_down(check, walls_count, id, near, commands),
+        }
     }
 
     /// Checks, and asks for the next check if all is well.
     pub(super) fn go_on<const D: usize, S: Surroundings<D>>(
-        &self,
+        &mut self,
         check: &SelfCheck,
         walls_count: bool,
         id: ParticleId,
         near: &S,
         commands: &mut Commands<CheckDue>,
     ) -> Result<(), Reason> {
+        self.due = None;
         self.verify(check, walls_count, id, near)?;
-        commands.schedule(id, check.wait(near.time()), self.next_check());
+        match check.timing {
+            Timing::Polled => {
+                commands.schedule(id, check.wait(near.time()), self.next_check());
+            }
+            Timing::Events => self.look_ahead(check, walls_count, id, near, commands),
+        }
         Ok(())
     }
 
@@ -233,16 +325,15 @@ impl Supports {
         }
         let gravity = near.gravity();
         let mut still = 0;
-        near.for_each_neighbour(id, check.support_range, |other| {
-            let lower = other.offset.dot(&gravity);
+        near.for_each_neighbour(id, check.range(), |other| {
             let holds = self.below.binary_search(&other.id).is_ok()
                 && other.mode.is_static()
-                && lower > 0.0;
+                && check.is_below(&other.offset, &gravity);
             let braces = self.above.binary_search(&other.id).is_ok();
             still += usize::from(holds || braces);
         });
         if walls_count {
-            still += walls_below(id, near).min(self.walls) as usize;
+            still += check.walls_below(id, near).min(self.walls) as usize;
         }
         if still == wanted {
             Ok(())
@@ -254,13 +345,4 @@ impl Supports {
             ))
         }
     }
-}
-
-fn walls_below<const D: usize, S: Surroundings<D>>(id: ParticleId, near: &S) -> u32 {
-    let gravity = near.gravity();
-    let mut count = 0;
-    near.for_each_wall(id, WALL_RANGE, |wall| {
-        count += u32::from(wall.normal.dot(&gravity) < 0.0);
-    });
-    count
 }

@@ -3,11 +3,12 @@
 use crate::boundary::{Cuboid, Side};
 use crate::collide::Restitution;
 use crate::dynamics::UniformGravity;
+use crate::engine::leaning::Leaning;
 use crate::engine::settings::Limits;
 use crate::engine::simulation::Simulation;
 use crate::engine::slot::Partner;
 use crate::model::Parts;
-use crate::particle::{Mode, Particle, Vector};
+use crate::particle::{Mode, Particle, ParticleId, Vector};
 use crate::policy::{SelfCheck, SlowDescent};
 use crate::predict::Polynomial;
 use crate::time::Time;
@@ -241,4 +242,33 @@ fn a_run_stops_at_a_fault() {
     heap.world.bodies[sleeper as usize].still = false;
     let one_more = heap.counts().total() + 1;
     heap.run(&Limits::events(one_more), &mut ());
+}
+
+#[test]
+fn edges_of_the_support_graph() {
+    let leaning = || {
+        let mut heap = heap();
+        let (sleeper, fixed) = (one(&heap, Mode::Frozen), one(&heap, Mode::Fixed));
+        heap.commands
+            .lean_on(ParticleId(sleeper), ParticleId(fixed));
+        heap.schedule();
+        heap.assert_consistent();
+        (heap, sleeper)
+    };
+    // One who is awake leans.
+    let (mut heap, sleeper) = leaning();
+    let saved = heap.leaning.save();
+    heap.let_go(sleeper);
+    let awake = one(&heap, Mode::Normal);
+    let mut edges = vec![Vec::new(); saved.len().max(awake as usize + 1)];
+    edges[awake as usize] = saved[sleeper as usize].clone();
+    let count = heap.world.bodies.len();
+    heap.leaning = Leaning::restore(edges, count).unwrap();
+    seen(&heap, "is awake and leans");
+    // What is read is checked.
+    let refused = |edges| Leaning::restore(edges, count).unwrap_err();
+    let edge = saved[sleeper as usize][0];
+    assert!(refused(vec![Vec::new(); count + 1]).contains("not there"));
+    assert!(refused(vec![vec![edge, edge]]).contains("out of order"));
+    assert!(refused(vec![vec![edge]]).contains("not there"));
 }

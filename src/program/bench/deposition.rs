@@ -382,6 +382,7 @@ fn since(now: &Counts, before: &Counts) -> Counts {
         wake: now.wake - before.wake,
         sleep: now.sleep - before.sleep,
         check: now.check - before.check,
+        support: now.support - before.support,
         check_wake: now.check_wake - before.check_wake,
         wall: now.wall - before.wall,
         transfer: now.transfer - before.transfer,

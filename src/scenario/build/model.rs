@@ -5,7 +5,7 @@ use crate::collide::Restitution;
 use crate::dynamics::{ForceFree, Trochoid, TurningGravity, TurningGround, UniformGravity};
 use crate::engine::{self, Settings};
 use crate::error::SetupError;
-use crate::model::{Dynamics, Motion, Parts};
+use crate::model::{Dynamics, GravityCourse, Motion, Parts};
 use crate::particle::Vector;
 use crate::policy::{self, Never, SlowDescent};
 use crate::predict::{Polynomial, Turning};
@@ -53,6 +53,13 @@ impl<const D: usize> Dynamics<D> for Drumming<D> {
         match self {
             Drumming::Gravity(dynamics) => dynamics.ground_velocity(position, time),
             Drumming::Ground(dynamics) => dynamics.ground_velocity(position, time),
+        }
+    }
+
+    fn gravity_course(&self) -> GravityCourse {
+        match self {
+            Drumming::Gravity(dynamics) => dynamics.gravity_course(),
+            Drumming::Ground(dynamics) => dynamics.gravity_course(),
         }
     }
 
@@ -150,6 +157,7 @@ impl Scenario {
 
     fn self_check(&self, check: &SelfCheck) -> policy::SelfCheck {
         policy::SelfCheck {
+            timing: check.timing,
             interval: check.interval,
             support_range: check.support_range,
             support_normals: check.support_normals,

@@ -3,7 +3,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::model::Place;
 use crate::policy::{
-    Comparison, DescentRead, EnergyStore, SlowDescent, SpeedRead, StoreAt, WakeRead,
+    Comparison, DescentRead, EnergyStore, SlowDescent, SpeedRead, StoreAt, Timing, WakeRead,
 };
 
 /// How exactly grains fall asleep and wake. What the paper leaves open is
@@ -67,6 +67,11 @@ impl Default for Sleep {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct SelfCheck {
+    /// What has sleepers check: the clock (`"polled"`), or the loss of a support
+    /// (`"events"`), at its very instant. Then `interval` counts only where nothing
+    /// can be foreseen, and `phase` for nothing.
+    #[serde(default)]
+    pub timing: Timing,
     /// τ_check: how often, in √(d/g).
     pub interval: f64,
     /// How near a support has to be, in units of the distance at contact.
