@@ -4,7 +4,9 @@
 use grainfall::boundary::{Cuboid, Side};
 use grainfall::engine::Simulation;
 use grainfall::model::{Boundary, Place};
-use grainfall::policy::{Comparison, EnergyStore, SelfCheck, SlowDescent, SpeedRead, WakeRead};
+use grainfall::policy::{
+    Comparison, EnergyStore, SelfCheck, SlowDescent, SpeedRead, Timing, WakeRead,
+};
 use grainfall::{Mode, Particle, Vector};
 use proptest::prelude::*;
 
@@ -35,7 +37,11 @@ pub(crate) fn policy() -> impl Strategy<Value = SlowDescent> {
         0..2u8,
         0..2u8,
         any::<bool>(),
-        any::<bool>(),
+        prop_oneof![
+            Just(None),
+            Just(Some(Timing::Polled)),
+            Just(Some(Timing::Events))
+        ],
     )
         .prop_map(
             |(sleep_speed, wake_speed, comparison, speed, wake, place, store, walls, check)| {
@@ -53,7 +59,10 @@ pub(crate) fn policy() -> impl Strategy<Value = SlowDescent> {
                     energy_store: [EnergyStore::VelocityBefore, EnergyStore::EnergyAfter]
                         [usize::from(store)],
                     wall_supports: walls,
-                    self_check: check.then(SelfCheck::default),
+                    self_check: check.map(|timing| SelfCheck {
+                        timing,
+                        ..SelfCheck::default()
+                    }),
                     ..SlowDescent::default()
                 }
             },
