@@ -131,7 +131,7 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
                 body.stamp = body.stamp.wrapping_add(1);
                 self.world.keep_blur(&self.model, member);
                 self.world.glance(&self.model, member);
-                self.tell_dependants(member);
+                self.tell_dependants(member, false);
             } else {
                 let position = self.world.particle_now(&self.model, member).position;
                 self.settle(member, position, velocity);

@@ -340,12 +340,13 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
     /// void.
     pub(super) fn settle(&mut self, particle: u32, position: Vector<D>, velocity: Vector<D>) {
         let model = &self.model;
+        let was_static = self.world.bodies[particle as usize].mode.is_static();
         self.world
             .write(model, particle, position, velocity, Mode::Normal);
         self.slots[particle as usize] = Slot::EMPTY;
         self.tie_if_moving(particle);
         self.note_speed(particle);
-        self.tell_dependants(particle);
+        self.tell_dependants(particle, was_static);
     }
 
     /// Reports, and predicts anew, the grains that the end of a cascade has

@@ -66,6 +66,9 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
                             Call::SupportChanged(supporter) => {
                                 self.support_changed(particle, supporter, alarm.order, observer);
                             }
+                            Call::Look(supporter) => {
+                                self.look_again(particle, supporter, alarm.order);
+                            }
                         }
                     }
                 }

@@ -3,7 +3,9 @@
 //!
 //! What a support is, the policy says ([`Commands::lean_on`]); the engine keeps
 //! the edges while the sleeper sleeps and asks the policy at the instant of a
-//! change. That costs per change: nothing is asked as time goes by.
+//! change. That costs per change: nothing is asked as time goes by. Where the
+//! policy wants to know that a supporter gets out of range, an alarm is set for
+//! the time up to which it certainly does not.
 //!
 //! [`Commands::lean_on`]: crate::model::Commands::lean_on
 
@@ -15,16 +17,27 @@ use crate::engine::queue::{Key, Rank};
 use crate::engine::simulation::Simulation;
 use crate::engine::transitions::{Alarm, Call};
 use crate::engine::view::View;
-use crate::model::{Model, Observer, StatePolicy};
-use crate::particle::ParticleId;
+use crate::model::{EventOf, Model, Observer, StatePolicy};
+use crate::particle::{Mode, ParticleId};
+use crate::time::Time;
+
+/// The engine looks no sooner than this again after a grain that leaves, in
+/// √(d/g): time goes on, whatever rounding does.
+const SOONEST: f64 = 1.0e-9;
 
 /// A sleeper leans on a grain.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct Edge {
     supporter: u32,
+    /// The policy wants to know if it gets as far as this times the distance at
+    /// contact.
+    range: f64,
     /// The number of the call that is under way, so that many changes at one
     /// instant are one.
     call: Option<u64>,
+    /// Until when it is certain to be within range, and the number of the alarm
+    /// that is set for then.
+    look: Option<(Time, u64)>,
 }
 
 /// The support graph. It takes no room until a policy uses it.
@@ -38,7 +51,7 @@ pub(super) struct Leaning {
 
 impl Leaning {
     /// From now on `sleeper` leans on `supporter`.
-    fn lean(&mut self, sleeper: u32, supporter: u32) {
+    fn lean(&mut self, sleeper: u32, supporter: u32, range: f64) {
         let room = sleeper.max(supporter) as usize + 1;
         if self.supporters.len() < room {
             self.supporters.resize(room, Vec::new());
@@ -48,8 +61,13 @@ impl Leaning {
         let Err(place) = edges.binary_search_by_key(&supporter, |edge| edge.supporter) else {
             return;
         };
-        let call = None;
-        edges.insert(place, Edge { supporter, call });
+        let edge = Edge {
+            supporter,
+            range,
+            call: None,
+            look: None,
+        };
+        edges.insert(place, edge);
         let dependants = &mut self.dependants[supporter as usize];
         if let Err(place) = dependants.binary_search(&sleeper) {
             dependants.insert(place, sleeper);
@@ -143,6 +161,9 @@ impl Leaning {
             if !edges.is_sorted_by(|one, next| one.supporter < next.supporter) {
                 return Err("the supporters of a grain are out of order");
             }
+            if edges.iter().any(|edge| edge.range.is_nan()) {
+                return Err("a grain leans within no range");
+            }
             for edge in edges {
                 let Some(leaning) = dependants.get_mut(edge.supporter as usize) else {
                     return Err("a grain leans on one that is not there");
@@ -178,14 +199,20 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
 
     /// Files who is to lean on whom: sleepers, on any other grain.
     pub(super) fn lean(&mut self) {
+        if self.commands.is_empty() {
+            return;
+        }
         let known = self.world.bodies.len() as u32;
-        for (sleeper, supporter) in self.commands.drain_leaning() {
-            let both_known = sleeper.0.max(supporter.0) < known;
-            if both_known && sleeper != supporter && {
-                let mode = self.world.bodies[sleeper.index()].mode;
-                mode == crate::particle::Mode::Frozen
-            } {
-                self.leaning.lean(sleeper.0, supporter.0);
+        let wanted: Vec<_> = self.commands.drain_leaning().collect();
+        for (ParticleId(sleeper), ParticleId(supporter), range) in wanted {
+            let both_known = sleeper.max(supporter) < known;
+            if both_known
+                && sleeper != supporter
+                && self.world.bodies[sleeper as usize].mode == Mode::Frozen
+                && !range.is_nan()
+            {
+                self.leaning.lean(sleeper, supporter, range);
+                self.look_after(sleeper, supporter);
             }
         }
     }
@@ -195,25 +222,76 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
         self.leaning.let_go(particle);
     }
 
-    /// A grain has changed now: the policy is to be asked for all that lean on
-    /// it, by id, when the collisions of this instant are over.
-    pub(super) fn tell_dependants(&mut self, particle: u32) {
+    /// A grain flies on another way from now on, and its mode may have changed. If
+    /// it has, the policy is to be asked for all that lean on it, by id, when the
+    /// collisions of this instant are over.
+    pub(super) fn tell_dependants(&mut self, particle: u32, mode_changed: bool) {
         for place in 0..self.leaning.dependants(particle).len() {
             let sleeper = self.leaning.dependants(particle)[place];
-            let order = self.alarm_count + 1;
-            if self.leaning.call(sleeper, particle, order) {
-                self.alarm_count = order;
-                self.alarms.push(Reverse(Alarm {
-                    key: Key {
-                        time: self.world.clock,
-                        rank: Rank::Policy,
-                        low: sleeper,
-                        high: sleeper,
-                    },
-                    order,
-                    call: Call::SupportChanged(particle),
-                }));
+            if mode_changed {
+                self.call(sleeper, particle);
             }
+            self.look_after(sleeper, particle);
+        }
+    }
+
+    /// The policy is to be asked about a sleeper and one that it leans on.
+    fn call(&mut self, sleeper: u32, supporter: u32) {
+        let number = self.alarm_count + 1;
+        if self.leaning.call(sleeper, supporter, number) {
+            self.set_alarm(self.world.clock, sleeper, Call::SupportChanged(supporter));
+        }
+    }
+
+    /// Sets an alarm, the number of which is the count of alarms from then on.
+    fn set_alarm(&mut self, time: Time, particle: u32, call: Call<EventOf<M, D>>) {
+        self.alarm_count += 1;
+        self.alarms.push(Reverse(Alarm {
+            key: Key {
+                time,
+                rank: Rank::Policy,
+                low: particle,
+                high: particle,
+            },
+            order: self.alarm_count,
+            call,
+        }));
+    }
+
+    /// Sees to it that the policy hears when a supporter gets out of range. While
+    /// an alarm is set for before that, a change of its flight costs a bound.
+    fn look_after(&mut self, sleeper: u32, supporter: u32) {
+        let Some(&mut Edge { range, look, .. }) = self.leaning.edge(sleeper, supporter) else {
+            return;
+        };
+        let body = &self.world.bodies[supporter as usize];
+        // Those that sleep are carried along alike.
+        if range == f64::INFINITY || body.mode == Mode::Frozen || body.still {
+            return;
+        }
+        let stays = self
+            .world
+            .stays_near(&self.model, sleeper, supporter, range);
+        if stays == 0.0 {
+            self.call(sleeper, supporter);
+            return;
+        }
+        let until = self.world.clock + stays.max(SOONEST);
+        if until.is_finite() && look.is_none_or(|(earlier, _)| until < earlier) {
+            self.set_alarm(until, sleeper, Call::Look(supporter));
+            if let Some(edge) = self.leaning.edge(sleeper, supporter) {
+                edge.look = Some((until, self.alarm_count));
+            }
+        }
+    }
+
+    /// An alarm of this number has come: where is the supporter now?
+    pub(super) fn look_again(&mut self, sleeper: u32, supporter: u32, number: u64) {
+        if let Some(edge) = self.leaning.edge(sleeper, supporter)
+            && edge.look.is_some_and(|(_, set)| set == number)
+        {
+            edge.look = None;
+            self.look_after(sleeper, supporter);
         }
     }
 

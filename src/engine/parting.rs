@@ -16,9 +16,12 @@ const ARRIVED: f64 = 1.0e-13;
 const STEPS: usize = 64;
 
 impl<const D: usize> World<D> {
-    /// How long two grains certainly stay nearer than `range` times their
-    /// distance at contact, if both fly on as now: in steps that no two grains of
-    /// their speeds can make too long.
+    /// How long the centres of two grains certainly stay nearer than `range` times
+    /// their distance at contact, if both fly on as now: in steps that no two
+    /// grains of their speeds can make too long. 0 if they are as far apart
+    /// already. It may be too short, but short times are told well: to ask again
+    /// at the end of the time tells, after a few times, the instant at which they
+    /// get so far.
     pub(super) fn stays_near<M: Model<D>>(
         &self,
         model: &M,

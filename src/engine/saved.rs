@@ -253,7 +253,10 @@ impl<R, E, S, const D: usize> Saved<R, E, S, D> {
                 || key.high != key.low
                 || key.time < self.clock
                 || !key.time.is_finite()
-                || matches!(alarm.call, Call::SupportChanged(id) if id as usize >= count)
+                || matches!(
+                    alarm.call,
+                    Call::SupportChanged(id) | Call::Look(id) if id as usize >= count
+                )
             {
                 return Err(wrong("an event of the policy that cannot be"));
             }

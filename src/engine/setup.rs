@@ -227,7 +227,7 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
         self.tie_if_moving(particle);
         self.note_speed(particle);
         self.tell_woken(particle, &WakeCause::Event);
-        self.tell_dependants(particle);
+        self.tell_dependants(particle, true);
         self.predict(particle);
         Ok(())
     }

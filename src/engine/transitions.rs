@@ -23,6 +23,8 @@ pub(super) enum Call<E> {
     Asked(E),
     /// A grain that this one leans on has changed.
     SupportChanged(u32),
+    /// A grain that this one leans on may be about to leave: the engine looks.
+    Look(u32),
 }
 
 /// The policy is to be asked about a grain.
@@ -85,7 +87,7 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
         // Ground that moves may be faster than the grain was.
         self.note_speed(particle);
         self.schedule();
-        self.tell_dependants(particle);
+        self.tell_dependants(particle, true);
         self.counts.sleep += 1;
         self.report(
             &Occurrence {
@@ -240,7 +242,7 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
         self.note_speed(particle);
         self.counts.check_wake += 1;
         self.tell_woken(particle, &WakeCause::Event);
-        self.tell_dependants(particle);
+        self.tell_dependants(particle, true);
         self.report(
             &Occurrence {
                 time: self.world.clock,

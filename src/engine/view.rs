@@ -59,10 +59,6 @@ impl<M: Model<D>, const D: usize> Surroundings<D> for View<'_, M, D> {
         });
     }
 
-    fn stays_near(&self, one: ParticleId, other: ParticleId, range: f64) -> f64 {
-        self.world.stays_near(self.model, one.0, other.0, range)
-    }
-
     fn for_each_wall(&self, of: ParticleId, gap: f64, mut visit: impl FnMut(NearWall<D>)) {
         let centre = self.particle(of);
         let now = self.world.clock;

@@ -126,7 +126,7 @@ pub enum Response<const D: usize> {
 #[derive(Clone, Debug)]
 pub struct Commands<E> {
     scheduled: Vec<(ParticleId, f64, E)>,
-    leaning: Vec<(ParticleId, ParticleId)>,
+    leaning: Vec<(ParticleId, ParticleId, f64)>,
 }
 
 impl<E> Default for Commands<E> {
@@ -148,15 +148,22 @@ impl<E> Commands<E> {
 
     /// Lets a grain that sleeps, or falls asleep now, lean on another: from now
     /// on until it wakes, [`StatePolicy::on_support_change`] is asked for `id`
-    /// at each instant at which `supporter` changes, that is, wakes, falls
-    /// asleep, collides, is disturbed by a guard or set free. A grain that flies
-    /// on or lies still does not change. To ask twice is to ask once.
+    /// at each instant at which `supporter` wakes, falls asleep or is set free.
     pub fn lean_on(&mut self, id: ParticleId, supporter: ParticleId) {
-        self.leaning.push((id, supporter));
+        self.lean_within(id, supporter, f64::INFINITY);
     }
 
-    /// Who is to lean on whom, in order; empties the list.
-    pub fn drain_leaning(&mut self) -> impl Iterator<Item = (ParticleId, ParticleId)> + '_ {
+    /// The same, and it is asked as well when the centre of `supporter` gets as
+    /// far from that of `id` as `range` times their distance at contact, to
+    /// within 10⁻¹³ of that: at that instant and, if it is answered that all is
+    /// well, at the next collision of `supporter` out there. Who leans on one
+    /// grain twice does so as it has asked for the first time.
+    pub fn lean_within(&mut self, id: ParticleId, supporter: ParticleId, range: f64) {
+        self.leaning.push((id, supporter, range));
+    }
+
+    /// Who is to lean on whom, within what range, in order; empties the list.
+    pub fn drain_leaning(&mut self) -> impl Iterator<Item = (ParticleId, ParticleId, f64)> + '_ {
         self.leaning.drain(..)
     }
 
@@ -292,8 +299,10 @@ pub trait StatePolicy<const D: usize> {
         Response::Ignore
     }
 
-    /// A grain that the sleeper `id` leans on ([`Commands::lean_on`]) has changed
-    /// at this instant. Nothing is asked unless the policy has let sleepers lean.
+    /// A grain that the sleeper `id` leans on ([`Commands::lean_on`]) has woken,
+    /// fallen asleep or been set free, or has got out of the range that was asked
+    /// for, at this instant. Nothing is asked unless the policy has let sleepers
+    /// lean.
     ///
     /// It is asked after all collisions of the instant. If several sleepers are
     /// concerned they are asked by id, the smallest first; who wakes is a change

@@ -57,14 +57,6 @@ pub trait Surroundings<const D: usize> {
     /// than `range` times their distance at contact, in no stated order.
     fn for_each_neighbour(&self, of: ParticleId, range: f64, visit: impl FnMut(Neighbour<D>));
 
-    /// How long the centres of two grains certainly stay nearer to each other
-    /// than `range` times their distance at contact, in √(d/g), if both go on as
-    /// they do now: 0 if they are farther apart already, or nearer than that
-    /// distance by no more than 10⁻¹³ of it. It may be too short, but short
-    /// times are told well: to ask again at the end of the time tells, after a
-    /// few times, the instant at which the distance is reached.
-    fn stays_near(&self, one: ParticleId, other: ParticleId, range: f64) -> f64;
-
     /// Calls `visit` for every wall nearer than `gap` to the surface of `of`.
     fn for_each_wall(&self, of: ParticleId, gap: f64, visit: impl FnMut(NearWall<D>));
 }

@@ -247,10 +247,10 @@ impl<const D: usize, C: RestCondition<D>> StatePolicy<D> for AtRest<C> {
     fn on_support_change<S: Surroundings<D>>(
         &self,
         id: ParticleId,
-        supporter: ParticleId,
+        _supporter: ParticleId,
         near: &S,
         memory: &mut Self::Memory,
-        commands: &mut Commands<CheckDue>,
+        _commands: &mut Commands<CheckDue>,
     ) -> Response<D> {
         let Some(check) = &self.self_check else {
             return Response::Ignore;
@@ -260,8 +260,7 @@ impl<const D: usize, C: RestCondition<D>> StatePolicy<D> for AtRest<C> {
             return Response::Ignore;
         }
         let walls = self.wall_supports;
-        let supports = &mut memory.supports;
-        match supports.changed(check, walls, id, supporter, near, commands) {
+        match memory.supports.verify(check, walls, id, near) {
             Ok(()) => Response::Keep,
             Err(reason) => {
                 Response::Wake(self.given_back(memory, near.time(), grain.velocity), reason)

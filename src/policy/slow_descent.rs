@@ -367,10 +367,10 @@ impl<const D: usize> StatePolicy<D> for SlowDescent {
     fn on_support_change<S: Surroundings<D>>(
         &self,
         id: ParticleId,
-        supporter: ParticleId,
+        _supporter: ParticleId,
         near: &S,
         memory: &mut Remembered<D>,
-        commands: &mut Commands<CheckDue>,
+        _commands: &mut Commands<CheckDue>,
     ) -> Response<D> {
         let Some(check) = &self.self_check else {
             return Response::Ignore;
@@ -380,8 +380,7 @@ impl<const D: usize> StatePolicy<D> for SlowDescent {
             return Response::Ignore;
         }
         let walls = self.wall_supports;
-        let supports = &mut memory.supports;
-        match supports.changed(check, walls, id, supporter, near, commands) {
+        match memory.supports.verify(check, walls, id, near) {
             Ok(()) => Response::Keep,
             Err(reason) => {
                 let gravity = near.gravity();

@@ -175,45 +175,40 @@ impl SelfCheck {
     }
 }
 
-/// The event "grain, check yourself". It carries the number under which it was
-/// asked for, so that it is void after a waking.
+/// The event "grain, check yourself". It carries the number of the sleep it was
+/// made in, so that it is void after a waking.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct CheckDue {
-    number: u32,
+    sleep: u32,
 }
 
 /// Who held a grain up when it fell asleep.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(super) struct Supports {
-    /// Counts the sleeps and, with events, the checks asked for.
-    number: u32,
+    /// Counts the sleeps.
+    sleep: u32,
     /// Frozen or fixed grains below.
     below: Vec<ParticleId>,
     /// Normal grains above.
     above: Vec<ParticleId>,
     /// Number of walls below.
     walls: u32,
-    /// With events: when the next check is due.
-    due: Option<Time>,
     /// With events: when nobody held it for the last time.
     unsupported: Option<Time>,
 }
 
 impl Supports {
     fn next_check(&self) -> CheckDue {
-        CheckDue {
-            number: self.number,
-        }
+        CheckDue { sleep: self.sleep }
     }
 
     pub(super) fn is_current(&self, event: CheckDue) -> bool {
-        event.number == self.number
+        event.sleep == self.sleep
     }
 
     /// Forgets them, and makes checks that are still due void.
     pub(super) fn forget(&mut self) {
-        self.number = self.number.wrapping_add(1);
-        self.due = None;
+        self.sleep = self.sleep.wrapping_add(1);
         self.below.clear();
         self.above.clear();
         self.walls = 0;
@@ -289,14 +284,13 @@ impl Supports {
 
     /// Checks, and asks for the next check if all is well.
     pub(super) fn go_on<const D: usize, S: Surroundings<D>>(
-        &mut self,
+        &self,
         check: &SelfCheck,
         walls_count: bool,
         id: ParticleId,
         near: &S,
         commands: &mut Commands<CheckDue>,
     ) -> Result<(), Reason> {
-        self.due = None;
         self.verify(check, walls_count, id, near)?;
         match check.timing {
             Timing::Polled => {
@@ -308,7 +302,7 @@ impl Supports {
     }
 
     /// Whether all of them still hold the grain up.
-    fn verify<const D: usize, S: Surroundings<D>>(
+    pub(super) fn verify<const D: usize, S: Surroundings<D>>(
         &self,
         check: &SelfCheck,
         walls_count: bool,

@@ -303,6 +303,7 @@ pub(crate) fn audit<const D: usize>(
 
         let tally = Counts {
             check: simulation.counts().check,
+            support: simulation.counts().support,
             transfer: simulation.counts().transfer,
             guard: simulation.counts().guard,
             ..auditor.tally

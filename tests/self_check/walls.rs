@@ -4,7 +4,7 @@ use grainfall::boundary::Side;
 use grainfall::engine::Simulation;
 use grainfall::model::{Model, Occurrence, OccurrenceKind as Kind};
 use grainfall::policy::{SelfCheck, Timing};
-use grainfall::{Mode, Particle, ParticleId, Time, Vector};
+use grainfall::{Mode, Particle, ParticleId, Time};
 
 use crate::common::{heavy, rule, until, watch, what};
 use crate::{at, at_once, in_the_open, own_clock, with_check};

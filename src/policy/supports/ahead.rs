@@ -1,6 +1,6 @@
 //! When a support will be lost: what there is to check between changes.
 
-use crate::model::{Commands, GravityCourse, Reason, Surroundings};
+use crate::model::{Commands, GravityCourse, Surroundings};
 use crate::particle::{Mode, ParticleId, Vector};
 use crate::policy::supports::{CheckDue, EDGE, SelfCheck, Supports, WALL_RANGE};
 use crate::time::Time;
@@ -26,8 +26,12 @@ impl Supports {
         near: &S,
         commands: &mut Commands<CheckDue>,
     ) {
-        for &supporter in self.below.iter().chain(&self.above) {
+        for &supporter in &self.below {
             commands.lean_on(id, supporter);
+        }
+        for &brace in &self.above {
+            // Out there it has left the range of the check, smaller by EDGE.
+            commands.lean_within(id, brace, check.support_range);
         }
         if self.below.len() + self.above.len() + self.walls as usize > 0 {
             self.look_ahead(check, walls_count, id, near, commands);
@@ -46,65 +50,19 @@ impl Supports {
         }
     }
 
-    /// Asks for the next check at the instant at which something may be lost.
+    /// Asks for the next check at the instant at which gravity leaves a support.
     pub(super) fn look_ahead<const D: usize, S: Surroundings<D>>(
-        &mut self,
+        &self,
         check: &SelfCheck,
         walls_count: bool,
         id: ParticleId,
         near: &S,
         commands: &mut Commands<CheckDue>,
     ) {
-        let mut wait = self.gravity_leaves_after(check, walls_count, id, near);
-        for &brace in &self.above {
-            wait = wait.min(brace_stays(id, brace, check, near));
+        let wait = self.gravity_leaves_after(check, walls_count, id, near);
+        if wait.is_finite() {
+            commands.schedule(id, wait.max(SOONEST), self.next_check());
         }
-        self.ask_again(wait, id, near, commands);
-    }
-
-    /// A grain that it leans on has changed now: checks, and asks for the next
-    /// check if all is well.
-    pub(in crate::policy) fn changed<const D: usize, S: Surroundings<D>>(
-        &mut self,
-        check: &SelfCheck,
-        walls_count: bool,
-        id: ParticleId,
-        supporter: ParticleId,
-        near: &S,
-        commands: &mut Commands<CheckDue>,
-    ) -> Result<(), Reason> {
-        if self.above.binary_search(&supporter).is_ok() {
-            // As often as it bounces: the others need not be looked at.
-            let wait = brace_stays(id, supporter, check, near);
-            if wait > 0.0 {
-                self.ask_again(wait, id, near, commands);
-                return Ok(());
-            }
-        }
-        self.verify(check, walls_count, id, near)?;
-        self.look_ahead(check, walls_count, id, near, commands);
-        Ok(())
-    }
-
-    /// Asks for a check, unless an earlier one is due: that will ask again.
-    fn ask_again<const D: usize, S: Surroundings<D>>(
-        &mut self,
-        wait: f64,
-        id: ParticleId,
-        near: &S,
-        commands: &mut Commands<CheckDue>,
-    ) {
-        if !wait.is_finite() {
-            return;
-        }
-        let wait = wait.max(SOONEST);
-        let time = near.time() + wait;
-        if self.due.is_some_and(|due| due <= time) {
-            return;
-        }
-        self.due = Some(time);
-        self.number = self.number.wrapping_add(1);
-        commands.schedule(id, wait, self.next_check());
     }
 
     /// How long until a support is no longer below under the gravity of then; the
@@ -155,22 +113,6 @@ impl Supports {
 fn moves<const D: usize, S: Surroundings<D>>(id: ParticleId, near: &S) -> bool {
     let over_ground = near.particle(id).velocity - near.ground_velocity(id);
     over_ground.norm_squared() > AT_REST * AT_REST
-}
-
-/// How long a grain above certainly stays within range: for ever if it has fallen
-/// asleep there. It is followed out to the whole range, so that when it gets there
-/// it has left that of the check, which is smaller by [`EDGE`].
-fn brace_stays<const D: usize, S: Surroundings<D>>(
-    id: ParticleId,
-    brace: ParticleId,
-    check: &SelfCheck,
-    near: &S,
-) -> f64 {
-    if near.particle(brace).mode == Mode::Frozen {
-        f64::INFINITY
-    } else {
-        near.stays_near(id, brace, check.support_range)
-    }
 }
 
 /// How long until what lies at `offset` from a grain, at rest over the ground, is
