@@ -344,7 +344,7 @@ where
 #[test]
 fn a_perch_is_left_at_the_instant_at_which_gravity_leaves_it() {
     use core::f64::consts::PI;
-    for (lean, rate) in [(0.3_f64, 0.25), (0.3, -0.25), (-1.2, 0.25), (1.5707, 1.0)] {
+    for (lean, rate) in [(0.3_f64, 0.25), (0.3, -0.25), (-1.2, 0.25), (1.5, 1.0)] {
         // To the right by `lean`, in radians. Gravity has to turn as far as the
         // perch leans less than a right angle, on the side to which it turns.
         let (sin, cos) = libm::sincos(lean);
