@@ -115,15 +115,6 @@ impl SelfCheck {
         }
     }
 
-    /// The cosine, of the angle between gravity and the way to a support, that it
-    /// has to exceed to be below.
-    fn least_cosine(&self) -> f64 {
-        match self.timing {
-            Timing::Polled => 0.0,
-            Timing::Events => EDGE,
-        }
-    }
-
     /// Whether what lies at `offset` from a grain is below it.
     fn is_below<const D: usize>(&self, offset: &Vector<D>, gravity: &Vector<D>) -> bool {
         let lower = offset.dot(gravity);
@@ -131,7 +122,7 @@ impl SelfCheck {
             Timing::Polled => lower > 0.0,
             Timing::Events => {
                 let sizes = offset.norm_squared() * gravity.norm_squared();
-                lower > self.least_cosine() * sizes.sqrt()
+                lower > EDGE * sizes.sqrt()
             }
         }
     }
