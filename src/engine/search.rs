@@ -309,6 +309,10 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
     #[inline]
     pub(super) fn find_renewal(&mut self, particle: u32) {
         let flight = self.world.flight(&self.model, particle);
+        if self.world.is_aloft(particle) {
+            self.slots[particle as usize].renewal = self.world.next_landing(particle);
+            return;
+        }
         let slot = &mut self.slots[particle as usize];
         slot.renewal = Time::NEVER;
         if flight.is_at_rest() {

@@ -2,6 +2,7 @@
 
 use std::collections::BinaryHeap;
 
+use crate::engine::aloft::Aloft;
 use crate::engine::body::{Body, World, scale_at};
 use crate::engine::consistency::Vigil;
 use crate::engine::counts::{Counts, ModeCounts};
@@ -87,6 +88,7 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
                 ledger: Ledger::default(),
                 blur: 0.0,
                 glances: Glances::new(settings.start),
+                aloft: Aloft::nobody(),
             },
             epoch_events: 0,
             memories: vec![MemoryOf::<M, D>::default(); count],
@@ -120,6 +122,7 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
         for particle in 0..count as u32 {
             simulation.tell_started(particle);
         }
+        simulation.lift_off();
         for particle in 0..count as u32 {
             simulation.predict(particle);
         }
@@ -170,6 +173,7 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
         self.tell_started(index);
         self.predict(index);
         self.release_if_static(index);
+        self.expect_landing();
         Ok(id)
     }
 
@@ -228,8 +232,7 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
         let mut deepest: Option<(f64, u32)> = None;
         let farthest = one.radius() + 0.5 * self.world.largest * scale_at::<M, D>(&self.model, now);
         self.world
-            .near
-            .for_each_within(particle, farthest, |found| {
+            .for_each_within(&self.model, particle, farthest, |found| {
                 let other = self.world.particle_now(&self.model, found.particle);
                 // Fixed grains may be built up of overlapping ones.
                 if one.mode == Mode::Fixed && other.mode == Mode::Fixed {
