@@ -25,12 +25,16 @@ use crate::time::Time;
 #[serde(deny_unknown_fields, default)]
 pub struct DynamoSleep {
     /// V_sleep, in √(gd).
+    #[cfg_attr(feature = "program", schemars(extend("exclusiveMinimum" = 0.0, "x-unit" = "√(gd)")))]
     pub sleep_speed: f64,
     /// How far apart two collisions of a resting grain may be, in d.
+    #[cfg_attr(feature = "program", schemars(extend("exclusiveMinimum" = 0.0, "x-unit" = "d")))]
     pub distance: f64,
     /// How long they have to be apart, in √(d/g).
+    #[cfg_attr(feature = "program", schemars(extend("exclusiveMinimum" = 0.0, "x-unit" = "√(d/g)")))]
     pub time: f64,
     /// V_wakeup, in √(gd): 0, so that any hit wakes, in the original.
+    #[cfg_attr(feature = "program", schemars(range(min = 0.0), extend("x-unit" = "√(gd)")))]
     pub wake_speed: f64,
 }
 
