@@ -161,11 +161,10 @@ impl Writer {
                     default.clear();
                 }
                 if what.is_empty() {
-                    what = line(
-                        self.resolve(property).0["description"]
-                            .as_str()
-                            .unwrap_or(""),
-                    );
+                    // The rest stands where its keys do.
+                    let resolved = self.resolve(property).0;
+                    let about = resolved["description"].as_str().unwrap_or("");
+                    what = line(about.split("\n\n").next().unwrap_or(""));
                 }
             }
             rows.push(vec![
