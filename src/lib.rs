@@ -100,8 +100,8 @@ pub use time::Time;
 mod book {
     #[doc = include_str!("../README.md")]
     struct Readme;
-    #[doc = include_str!("../book/src/getting-started.md")]
-    struct GettingStarted;
+    #[doc = include_str!("../book/src/library.md")]
+    struct TheLibrary;
     #[doc = include_str!("../book/src/model.md")]
     struct TheModel;
     #[doc = include_str!("../book/src/drum.md")]
@@ -119,6 +119,4 @@ mod book {
     struct InterruptedRuns;
     #[doc = include_str!("../book/src/analysis.md")]
     struct Analysis;
-    #[doc = include_str!("../book/src/results.md")]
-    struct Results;
 }
