@@ -43,7 +43,7 @@ pub struct Scenario {
     pub seed: u64,
     /// How the grains of each generator are numbered: `"drawn"`, as they are drawn,
     /// or `"space"`, so that neighbours have numbers near each other, which makes
-    /// events of more than 10⁴ grains cheaper.
+    /// events of more than 10⁴ grains cheaper. Left out: as drawn.
     #[serde(default, skip_serializing_if = "Numbering::is_drawn")]
     pub numbering: Numbering,
     /// `"none"`, a size (pointing down the last axis), or a vector; in g.

@@ -65,7 +65,7 @@ fn links_that_lead_nowhere_are_found() {
         ("modell.md", true),
         ("model.md#gards", true),
         ("#wakening", true),
-        ("figures/heap.svg", true),
+        ("figures/nothing.svg", true),
         ("https://example.org", true),
     ] {
         assert_eq!(flaw("model.md", link, &pages).is_some(), wrong, "{link}");

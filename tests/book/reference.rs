@@ -98,8 +98,8 @@ fn place_for(path: &str) -> Option<(&'static str, String, Vec<&'static str>)> {
         "diameter" | "mass" => ("arch", path.to_owned(), sizes),
         _ if path.starts_with("boundaries.0.walls") => (
             "arch",
-            path.to_owned(),
-            vec!["boundaries.0={walls={low=-9,restitution=0.5}}"],
+            path.replace("boundaries.0", "boundaries.1"),
+            vec!["boundaries=[\"open\",{walls={low=-9,restitution=0.5}}]"],
         ),
         _ if path.starts_with("rotation") || path.starts_with("self_check") => {
             ("drum", path.to_owned(), sizes)
