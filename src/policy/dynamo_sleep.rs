@@ -64,7 +64,15 @@ impl<const D: usize> RestCondition<D> for DynamoSleep {
     fn validate(&self) -> Result<(), SetupError> {
         positive("sleep_speed", self.sleep_speed)?;
         positive("distance", self.distance)?;
-        positive("time", self.time)
+        positive("time", self.time)?;
+        if self.wake_speed >= 0.0 {
+            return Ok(());
+        }
+        Err(SetupError::Parameter {
+            field: "wake_speed",
+            value: self.wake_speed,
+            allowed: "0 or more is allowed",
+        })
     }
 
     fn at_rest<S: Surroundings<D>>(

@@ -7,22 +7,22 @@ use std::path::{Path, PathBuf};
 use pulldown_cmark::{Event, Options, Parser, Tag, TagEnd};
 
 /// A page: its text, what it links to, what can be linked to in it.
-pub struct Page {
-    pub text: String,
-    pub links: BTreeSet<String>,
-    pub anchors: BTreeSet<String>,
+pub(crate) struct Page {
+    pub(crate) text: String,
+    pub(crate) links: BTreeSet<String>,
+    pub(crate) anchors: BTreeSet<String>,
 }
 
-pub fn root() -> PathBuf {
+pub(crate) fn root() -> PathBuf {
     PathBuf::from(env!("CARGO_MANIFEST_DIR"))
 }
 
-pub fn folder() -> PathBuf {
+pub(crate) fn folder() -> PathBuf {
     root().join("book/src")
 }
 
 /// All pages of the book, by the names of their files.
-pub fn pages() -> BTreeMap<String, Page> {
+pub(crate) fn pages() -> BTreeMap<String, Page> {
     fs::read_dir(folder())
         .unwrap()
         .map(|entry| entry.unwrap().path())
@@ -35,7 +35,7 @@ pub fn pages() -> BTreeMap<String, Page> {
 }
 
 impl Page {
-    pub fn read(path: &Path) -> Page {
+    pub(crate) fn read(path: &Path) -> Page {
         let text = fs::read_to_string(path).unwrap();
         let mut page = Page {
             links: BTreeSet::new(),

@@ -115,7 +115,7 @@ fn bounds_in_the_reference_are_those_of_the_program() {
     let schema: Value = serde_json::from_slice(&grainfall(&["schema"]).stdout).unwrap();
     let mut found = Vec::new();
     bounded(&schema["$defs"], "", &schema, &mut found);
-    let mut tried = 0;
+    let (mut tried, mut accepted) = (0, Vec::new());
     for (path, schema) in found {
         let Some((preset, path, besides)) = place_for(&path) else {
             continue;
@@ -146,15 +146,13 @@ fn bounds_in_the_reference_are_those_of_the_program() {
             }
             let checked = grainfall(&arguments);
             let said = String::from_utf8_lossy(&checked.stderr);
-            assert_eq!(
-                checked.status.code(),
-                Some(2),
-                "{arguments:?} is accepted: {checked:?}"
-            );
             let key = path.rsplit('.').next().unwrap();
-            assert!(said.contains(key), "{arguments:?}: {said}");
+            if checked.status.code() != Some(2) || !said.contains(key) {
+                accepted.push(format!("{arguments:?}: {said}"));
+            }
             tried += 1;
         }
     }
+    assert!(accepted.is_empty(), "{}", accepted.join("\n"));
     assert!(tried > 70, "{tried} values are tried");
 }

@@ -350,7 +350,7 @@ fn allowed(schema: &Value) -> String {
 fn tell(number: &Number) -> String {
     match (number.as_i64(), number.as_f64()) {
         (Some(whole), _) => whole.to_string(),
-        (None, Some(value)) if value == 0.0 => "0".to_owned(),
+        (None, Some(0.0)) => "0".to_owned(),
         (None, Some(value)) if !(1.0e-3..1.0e6).contains(&value.abs()) => format!("{value:e}"),
         (None, Some(value)) => value.to_string(),
         (None, None) => number.to_string(),
