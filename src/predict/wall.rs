@@ -2,7 +2,7 @@
 
 use super::descent::{first_root, quadratic_descent};
 use super::{DoubleDouble, Real, forecast, rounded};
-use crate::model::{Encounter, Flight, Forecast, PolynomialFlight, Wall};
+use crate::model::{Encounter, Flight, Forecast, PolynomialFlight, Shape, Wall};
 use crate::particle::Vector;
 
 /// Steps before a curved wall's question is put off.
@@ -110,6 +110,26 @@ fn settle_plane<const D: usize, F: PolynomialFlight<D>, W: Wall<D>>(
     }
 }
 
+/// First contact of a grain with a wall of any form, found from its distance alone:
+/// for predictors of one's own, whatever the flights are.
+///
+/// `acceleration`, in g, bounds that of the flight from its start up to the horizon.
+/// No contact is passed over if that bound, those of [`Wall::shape`] and, to 8 ε
+/// (|x| + |φ| + R), the wall's distances φ are right.
+pub fn wall_by_distance<const D: usize, F: Flight<D>, W: Wall<D>>(
+    encounter: &Encounter<'_, D, F, W>,
+    acceleration: f64,
+) -> Forecast {
+    match encounter.wall.shape() {
+        Shape::Plane { .. } => general(encounter, acceleration, 0.0, 0.0, 0.0),
+        Shape::General {
+            curvature,
+            speed,
+            acceleration: of_wall,
+        } => general(encounter, acceleration, curvature, speed, of_wall),
+    }
+}
+
 /// Any wall, from its distance alone, and any flight whose acceleration has a bound.
 ///
 /// Far from it a grain cannot touch before it has covered the gap. Near it the
@@ -117,7 +137,7 @@ fn settle_plane<const D: usize, F: PolynomialFlight<D>, W: Wall<D>>(
 /// φ + φ′ s − B s²/2 lies below it. The longer of the two steps is taken; neither
 /// passes a contact, if the wall's distances are right to [`ROUNDING`]: φ counts
 /// as less by as much. Contact is where it is twice that or less, and closing.
-pub(super) fn general<const D: usize, F: Flight<D>, W: Wall<D>>(
+fn general<const D: usize, F: Flight<D>, W: Wall<D>>(
     encounter: &Encounter<'_, D, F, W>,
     acceleration: f64,
     curvature: f64,
