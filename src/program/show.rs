@@ -7,7 +7,7 @@ use serde::Serialize;
 
 use crate::boundary::Cuboid;
 use crate::engine::Simulation;
-use crate::policy::Never;
+use crate::policy::Criterion;
 use crate::program::cli::CheckArguments;
 use crate::program::criteria::Program;
 use crate::program::error::ProgramError;
@@ -121,11 +121,11 @@ pub(super) fn check_grains<const D: usize>(
         }
         (_, Some(rotation)) => {
             // Whoever sleeps: his parameters were checked when they were read.
-            let model = scenario.turning_model(rotation, Never, boundary);
+            let model = scenario.turning_model(rotation, Criterion::Never, boundary);
             Simulation::with_settings(model, grains, settings).map(drop)
         }
         (_, None) => {
-            let model = scenario.gravity_model(Never, boundary);
+            let model = scenario.gravity_model(Criterion::Never, boundary);
             Simulation::with_settings(model, grains, settings).map(drop)
         }
     };

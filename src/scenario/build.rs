@@ -16,7 +16,7 @@ use crate::scenario::build::crowd::pairs_in_reach;
 use crate::scenario::error::{Problem, ScenarioError};
 use crate::scenario::path::Path;
 use crate::scenario::read::Origin;
-use crate::scenario::schema::{Scenario, Side, Source, SourceKind};
+use crate::scenario::schema::{Numbering, Scenario, Side, Source, SourceKind};
 use crate::scenario::validate::MOST_GRAINS;
 use crate::setup;
 
@@ -170,7 +170,11 @@ impl<const D: usize> Start<D> {
                 })
             }
         };
-        let made = made.map_err(|error| origin.refuse(source_path(index), error))?;
+        let mut made = made.map_err(|error| origin.refuse(source_path(index), error))?;
+        let generated = !matches!(kind, SourceKind::Grain(_) | SourceKind::File(_));
+        if generated && scenario.numbering == Numbering::Space {
+            setup::sort_in_space(&mut made);
+        }
         self.grains.extend(made);
         Ok(())
     }

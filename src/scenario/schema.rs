@@ -3,6 +3,7 @@
 mod conditions;
 mod criteria;
 mod gravity;
+mod numbering;
 mod parameters;
 mod rotation;
 mod sleep;
@@ -11,6 +12,7 @@ mod sources;
 pub use conditions::{Output, Stop};
 pub use criteria::Criteria;
 pub use gravity::Gravity;
+pub use numbering::Numbering;
 pub use parameters::{Guards, Parameters, Threshold};
 pub use rotation::{Rotation, Turns};
 pub use sleep::{Phase, SelfCheck, Sleep};
@@ -39,6 +41,11 @@ pub struct Scenario {
     #[serde(default = "default_seed")]
     #[schemars(range(min = 0, max = 9_223_372_036_854_775_807_i64))]
     pub seed: u64,
+    /// How the grains of each generator are numbered: `"drawn"`, as they are drawn,
+    /// or `"space"`, so that neighbours have numbers near each other, which makes
+    /// events of more than 10⁴ grains cheaper.
+    #[serde(default, skip_serializing_if = "Numbering::is_drawn")]
+    pub numbering: Numbering,
     /// `"none"`, a size (pointing down the last axis), or a vector; in g.
     #[serde(default)]
     pub gravity: Gravity,

@@ -9,7 +9,7 @@ use crate::engine::{Limits, Simulation};
 use crate::error::SetupError;
 use crate::model::Parts;
 use crate::particle::{Mode, Particle, Vector};
-use crate::policy::SlowDescent;
+use crate::policy::{Criterion, SlowDescent};
 use crate::predict::Polynomial;
 use crate::setup::insertion::insert;
 use crate::setup::region::Region;
@@ -144,7 +144,8 @@ impl Drum {
                 elastic_speed: 1.0e-3,
                 ..Restitution::default()
             },
-            state_policy: SlowDescent::with_threshold(0.1),
+            // The type with which the program is compiled anyway.
+            state_policy: Criterion::SlowDescent(SlowDescent::with_threshold(0.1)),
             boundary: Cuboid::new(sides)?,
         };
         let mut simulation = Simulation::new(model, grains)?;

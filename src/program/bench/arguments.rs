@@ -90,7 +90,8 @@ Examples:
   grainfall bench gas --repeats 5 --json --hash
 
 Diameter, mass and temperature are 1; the total momentum is 0. One collision of
-two spheres that was carried out counts as one; nothing else counts.
+two spheres that was carried out counts as one; nothing else counts. More than
+20000 grains are numbered along a curve that fills space.
 
 Time before the timed part, if --equilibrate does not say it, by number of
 grains and packing fraction:
@@ -149,7 +150,9 @@ Examples:
 It is the preset `deposition`: the same numbers make the same trajectory, and
 the hash of a whole run is the one in its summary. The base is as wide as makes
 the rain as high as the paper's, 500 d, if --width does not say it: 10 d for 4800
-grains. Wide rains differ from it in nothing but their width.
+grains. Wide rains differ from it in nothing but their width, and of more than
+20000 grains in their numbers, which follow a curve that fills space
+(`numbering = \"space\"` in a scenario).
 
 Physical events of any kind count as one each: what `grainfall run` counts, too.
 Without --from, --until and --events the whole run is timed, until all grains

@@ -8,6 +8,7 @@ use crate::error::SetupError;
 use crate::model::Observer;
 use crate::observe::TrajectoryHash;
 use crate::policy::Criterion;
+use crate::program::bench::MANY;
 use crate::program::bench::arguments::DepositionArguments;
 use crate::program::bench::gas::bytes_of;
 use crate::program::bench::memory::Memory;
@@ -74,7 +75,9 @@ impl Rain {
         })?;
         let mut origin = preset.origin();
         let side = format!("{{ periodic = {{ length = {:?} }} }}", self.width);
+        let numbering = if self.count > MANY { "space" } else { "drawn" };
         let assignments = [
+            format!("numbering=\"{numbering}\""),
             format!("seed={}", self.seed),
             format!("boundaries=[{side}, {side}, \"open\"]"),
             format!("grains.1.rain.count={}", self.count),

@@ -14,6 +14,7 @@ use crate::observe::TrajectoryHash;
 use crate::particle::{Particle, Vector};
 use crate::policy::Never;
 use crate::predict::Polynomial;
+use crate::program::bench::MANY;
 use crate::program::bench::arguments::{GasArguments, GasStart};
 use crate::program::bench::memory::Memory;
 use crate::program::bench::timing::timed;
@@ -21,7 +22,7 @@ use crate::program::error::ProgramError;
 use crate::program::processor::ProcessorClock;
 use crate::program::progress::Progress;
 use crate::program::show::say_result;
-use crate::setup::{Crystal, Gas, seeded};
+use crate::setup::{Crystal, Gas, seeded, sort_in_space};
 use crate::time::Time;
 
 /// The gas of a simulation.
@@ -99,7 +100,10 @@ impl Plan {
 
     /// The gas in motion.
     fn simulation(&self, memory: &Memory) -> Result<Simulation<Elastic, 3>, ProgramError> {
-        let (grains, edges) = self.grains()?;
+        let (mut grains, edges) = self.grains()?;
+        if grains.len() > MANY {
+            sort_in_space(&mut grains);
+        }
         memory.forget_peak();
         let model = Parts {
             dynamics: ForceFree,

@@ -9,7 +9,7 @@ use crate::error::SetupError;
 use crate::model::{Occurrence, OccurrenceKind, Parts};
 use crate::output::Frame;
 use crate::particle::{Particle, Vector};
-use crate::policy::SlowDescent;
+use crate::policy::{Criterion, SlowDescent};
 use crate::predict::Polynomial;
 use crate::program::error::ProgramError;
 use crate::program::estimate::Estimate;
@@ -23,8 +23,7 @@ const TRIES: i32 = 16;
 /// By how much two neighbouring starts differ, in d.
 const STEP: f64 = 1.0 / 512.0;
 
-type Arch =
-    Simulation<Parts<UniformGravity<2>, Polynomial, Restitution, SlowDescent, Cuboid<2>>, 2>;
+type Arch = Simulation<Parts<UniformGravity<2>, Polynomial, Restitution, Criterion, Cuboid<2>>, 2>;
 
 /// Two grains over two frozen ones, the left one so much to the right and up of
 /// a symmetric start.
@@ -41,11 +40,11 @@ fn arch(right: f64, up: f64) -> Result<Arch, SetupError> {
         dynamics: UniformGravity::<2>::down(),
         predictor: Polynomial,
         collision_rule: Restitution::default(),
-        state_policy: SlowDescent {
+        state_policy: Criterion::SlowDescent(SlowDescent {
             sleep_speed: 0.05,
             wake_speed: 0.5,
             ..SlowDescent::default()
-        },
+        }),
         boundary: Cuboid::new([Side::Open, Side::Open])?,
     };
     Simulation::new(model, grains)

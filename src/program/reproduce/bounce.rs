@@ -8,7 +8,7 @@ use crate::error::SetupError;
 use crate::model::{Occurrence, OccurrenceKind, Parts};
 use crate::particle::{Particle, Vector};
 use crate::plot::{Axis, Chart, Mark, Series};
-use crate::policy::SlowDescent;
+use crate::policy::{Criterion, SlowDescent};
 use crate::predict::Polynomial;
 use crate::program::error::ProgramError;
 use crate::program::estimate::Estimate;
@@ -26,7 +26,7 @@ const UNTIL: f64 = 4.0;
 /// A ball that first meets the floor at t = 1, with speed 1.
 struct Ball {
     simulation:
-        Simulation<Parts<UniformGravity<2>, Polynomial, Restitution, SlowDescent, Cuboid<2>>, 2>,
+        Simulation<Parts<UniformGravity<2>, Polynomial, Restitution, Criterion, Cuboid<2>>, 2>,
 }
 
 impl Ball {
@@ -39,11 +39,11 @@ impl Ball {
                 elastic_speed,
                 ..Restitution::default()
             },
-            state_policy: SlowDescent {
+            state_policy: Criterion::SlowDescent(SlowDescent {
                 sleep_speed,
                 wall_supports: true,
                 ..SlowDescent::default()
-            },
+            }),
             boundary: Cuboid::new(sides)?,
         };
         let ball = Particle::new(Vector::<2>::new(0.0, 1.0), Vector::<2>::zeros());

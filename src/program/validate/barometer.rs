@@ -8,7 +8,7 @@ use crate::engine::{Guards, Limits, Settings, Simulation};
 use crate::error::SetupError;
 use crate::model::Parts;
 use crate::particle::{Particle, Vector};
-use crate::policy::Never;
+use crate::policy::Criterion;
 use crate::predict::Polynomial;
 use crate::program::estimate::Estimate;
 use crate::program::validate::check::{Allowance, Check, Source};
@@ -103,7 +103,7 @@ pub(super) fn checks(effort: Effort) -> Result<Vec<Check>, SetupError> {
     Ok(checks)
 }
 
-type Model = Parts<UniformGravity<3>, Polynomial, Restitution, Never, Cuboid<3>>;
+type Model = Parts<UniformGravity<3>, Polynomial, Restitution, Criterion, Cuboid<3>>;
 
 /// Edge of the square floor for so many grains, in d.
 fn floor_edge(count: usize) -> f64 {
@@ -136,7 +136,7 @@ fn gas(count: usize, energy: f64, seed: u64) -> Result<Simulation<Model, 3>, Set
         dynamics: UniformGravity::<3>::down(),
         predictor: Polynomial,
         collision_rule: Restitution::elastic(),
-        state_policy: Never,
+        state_policy: Criterion::Never,
         boundary: Cuboid::new([
             Side::periodic(edges[0]),
             Side::periodic(edges[1]),

@@ -7,7 +7,7 @@ use crate::engine::{Guards, Limits, Settings, Simulation, StopReason};
 use crate::error::SetupError;
 use crate::model::{Occurrence, Parts};
 use crate::particle::{Particle, Vector};
-use crate::policy::Never;
+use crate::policy::Criterion;
 use crate::predict::Polynomial;
 use crate::program::estimate::Estimate;
 use crate::program::validate::check::{Allowance, Check, Source};
@@ -28,7 +28,7 @@ pub(super) fn checks(_effort: Effort) -> Result<Vec<Check>, SetupError> {
             dynamics: UniformGravity::<2>::down(),
             predictor: Polynomial,
             collision_rule: Restitution::elastic(),
-            state_policy: Never,
+            state_policy: Criterion::Never,
             boundary: Cuboid::new([Side::Open, Side::floor(0.0, restitution)])?,
         };
         // Half a diameter above the floor: it comes down at t = 1 with speed 1.
