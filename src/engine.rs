@@ -32,6 +32,7 @@ mod simulation;
 mod slot;
 mod transitions;
 mod view;
+mod walls;
 
 pub use answers::{Answer, Answers};
 pub use counts::{Counts, ModeCounts};

@@ -14,6 +14,7 @@ use crate::engine::queue::EventQueue;
 use crate::engine::settings::Settings;
 use crate::engine::simulation::Simulation;
 use crate::engine::slot::Slot;
+use crate::engine::walls::{check_distance, check_walls};
 use crate::error::SetupError;
 use crate::model::{
     Boundary, CollisionRule, Commands, Dynamics, Flight, MemoryOf, Model, SpinOf, StatePolicy, Wall,
@@ -219,11 +220,13 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
         let now = self.world.clock;
         let one = self.world.particle_now(&self.model, particle);
         for (place, wall) in self.model.boundary().walls().iter().enumerate() {
+            let id = WallId(place as u16);
+            check_distance(id, wall, &one.position, now)?;
             let depth = one.radius() - wall.distance(&one.position, now);
             if depth > TOLERANCE {
                 return Err(SetupError::OutsideWall {
                     id: ParticleId(particle),
-                    wall: WallId(place as u16),
+                    wall: id,
                     depth,
                     tolerance: TOLERANCE,
                 });
@@ -265,6 +268,8 @@ pub(super) fn check_parts<M: Model<D>, const D: usize>(
     model.dynamics().validate()?;
     model.collision_rule().validate()?;
     model.state_policy().validate()?;
+    model.boundary().validate()?;
+    check_walls(model.boundary())?;
     if !settings.start.is_finite() {
         return Err(SetupError::Parameter {
             field: "start",
