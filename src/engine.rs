@@ -3,6 +3,7 @@
 //! It knows a model by [`Model`](crate::model::Model) alone and no
 //! implementation of its parts.
 
+mod aloft;
 mod answers;
 #[cfg(test)]
 mod audit;
@@ -33,6 +34,7 @@ mod simulation;
 mod slot;
 mod transitions;
 mod view;
+mod walls;
 
 pub use answers::{Answer, Answers};
 pub use counts::{Counts, ModeCounts};

@@ -56,6 +56,18 @@ pub enum SetupError {
         /// How deep is still taken for rounding, in d.
         tolerance: f64,
     },
+    /// Something that a wall says of itself and that cannot be.
+    #[error("wall {wall}: {field} is {value}; {allowed}")]
+    Wall {
+        /// Which wall.
+        wall: WallId,
+        /// Which of its quantities.
+        field: &'static str,
+        /// Its value.
+        value: f64,
+        /// What is allowed.
+        allowed: &'static str,
+    },
     /// A periodic axis shorter than two diameters would let a grain meet itself
     /// or one neighbour twice.
     #[error(

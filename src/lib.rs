@@ -92,7 +92,7 @@ pub mod program;
 pub mod scenario;
 
 pub use error::SetupError;
-pub use particle::{Mode, Particle, ParticleId, Vector, WallId};
+pub use particle::{Mode, Particle, ParticleId, Vector, WallId, along};
 pub use time::Time;
 
 /// The listings of the README and of the book, compiled and run by `cargo test`.
@@ -100,14 +100,22 @@ pub use time::Time;
 mod book {
     #[doc = include_str!("../README.md")]
     struct Readme;
-    #[doc = include_str!("../book/src/getting-started.md")]
-    struct GettingStarted;
+    #[doc = include_str!("../book/src/library.md")]
+    struct TheLibrary;
     #[doc = include_str!("../book/src/model.md")]
     struct TheModel;
     #[doc = include_str!("../book/src/drum.md")]
     struct Drum;
     #[doc = include_str!("../book/src/own-criterion.md")]
     struct OwnCriterion;
+    #[doc = include_str!("../book/src/own-collision-rule.md")]
+    struct OwnCollisionRule;
+    #[doc = include_str!("../book/src/own-boundary.md")]
+    struct OwnBoundary;
+    #[doc = include_str!("../book/src/own-dynamics.md")]
+    struct OwnDynamics;
+    #[doc = include_str!("../book/src/own-predictor.md")]
+    struct OwnPredictor;
     #[doc = include_str!("../book/src/prediction.md")]
     struct Prediction;
     #[doc = include_str!("../book/src/refusals.md")]
@@ -119,6 +127,4 @@ mod book {
     struct InterruptedRuns;
     #[doc = include_str!("../book/src/analysis.md")]
     struct Analysis;
-    #[doc = include_str!("../book/src/results.md")]
-    struct Results;
 }

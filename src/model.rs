@@ -100,6 +100,17 @@ impl<Y, P, C, S, B> Parts<Y, P, C, S, B> {
         }
     }
 
+    /// The same model with another predictor.
+    pub fn with_predictor<P2>(self, predictor: P2) -> Parts<Y, P2, C, S, B> {
+        Parts {
+            dynamics: self.dynamics,
+            predictor,
+            collision_rule: self.collision_rule,
+            state_policy: self.state_policy,
+            boundary: self.boundary,
+        }
+    }
+
     /// The same model with another collision rule.
     pub fn with_collision_rule<C2>(self, collision_rule: C2) -> Parts<Y, P, C2, S, B> {
         Parts {

@@ -37,6 +37,7 @@ pub use double_double::DoubleDouble;
 pub use gap::{CERTAIN, GapPolynomial, Relative};
 pub use real::Real;
 pub use turning::Turning;
+pub use wall::wall_by_distance;
 
 use crate::model::{
     Approach, Crowd, Encounter, Forecast, LANES, Nook, PolynomialFlight, Predictor, Shape, Wall,
@@ -112,13 +113,9 @@ impl<const D: usize, F: PolynomialFlight<D>> Predictor<D, F> for Polynomial {
     fn wall<W: Wall<D>>(&self, encounter: &Encounter<'_, D, F, W>) -> Forecast {
         match encounter.wall.shape() {
             Shape::Plane { normal, offset } => wall::plane(encounter, &normal, offset),
-            Shape::General {
-                curvature,
-                speed,
-                acceleration,
-            } => {
+            Shape::General { .. } => {
                 let own = encounter.flight.acceleration().norm_squared().sqrt();
-                wall::general(encounter, own, curvature, speed, acceleration)
+                wall_by_distance(encounter, own)
             }
         }
     }

@@ -16,6 +16,7 @@ mod load;
 mod means;
 mod processor;
 mod progress;
+mod reference;
 mod reproduce;
 mod resume;
 mod run;
@@ -55,6 +56,7 @@ fn run_command(program: &Program) -> ExitCode {
         Command::Preset { name } => show::preset(&name),
         Command::Check(arguments) => show::check(&arguments, program),
         Command::Schema => show::schema(),
+        Command::Reference(arguments) => reference::reference(&arguments),
         Command::Draw(arguments) => draw::draw(&arguments),
         Command::Analyse(arguments) => analyse::analyse(&arguments),
         Command::Reproduce(arguments) => reproduce::reproduce(&arguments, program),

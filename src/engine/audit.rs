@@ -100,10 +100,7 @@ fn hash_of<M: Model<D>, const D: usize>(
             break;
         }
         if slice.is_some() {
-            simulation.lay_grid();
-            for particle in 0..simulation.world.bodies.len() as u32 {
-                simulation.predict(particle);
-            }
+            simulation.rebuild_grid();
         }
     }
     hash.value()

@@ -2,6 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
+use crate::engine::aloft::Aloft;
 use crate::engine::cells::Found;
 use crate::engine::counts::ModeCounts;
 use crate::engine::glances::Glances;
@@ -45,6 +46,7 @@ pub(super) struct World<const D: usize> {
     /// [`LONG_AGO`].
     pub(super) blur: f64,
     pub(super) glances: Glances<D>,
+    pub(super) aloft: Aloft<D>,
 }
 
 /// Positions of grains whose last event is longer ago than this, in √(d/g), may
@@ -149,6 +151,7 @@ impl<const D: usize> World<D> {
         body.velocity = velocity;
         body.since = self.clock;
         body.stamp = body.stamp.wrapping_add(1);
+        let falls_no_more = body.mode == Mode::Falling && mode != Mode::Falling;
         if body.mode != mode {
             *self.modes.of(body.mode) -= 1;
             *self.modes.of(mode) += 1;
@@ -171,6 +174,9 @@ impl<const D: usize> World<D> {
                 }
                 self.near.unwind(particle, axis, turns as i32);
             }
+        }
+        if falls_no_more && self.near.is_tied(particle) {
+            self.stay_below(particle);
         }
         self.keep_blur(model, particle);
         self.glance(model, particle);

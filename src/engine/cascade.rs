@@ -28,6 +28,9 @@ const HURRY: f64 = 0.1;
 /// A grain is held if its contacts leave less than this part of its weight.
 const HELD: f64 = 1.0e-3;
 
+/// A cascade that goes on after the guard has acted so often is looked at more closely.
+const STUBBORN: u32 = 256;
+
 /// A cluster of grains that touch is not followed beyond this many.
 const MOST_MEMBERS: usize = 12;
 
@@ -37,6 +40,26 @@ struct Cluster<const D: usize> {
     touches: Vec<Touch<D>>,
     /// The static grains among those touched.
     statics: Vec<u32>,
+}
+
+impl<const D: usize> Cluster<D> {
+    /// The velocities nearest to `before` with which nobody comes nearer and the first
+    /// member leaves such of its contacts at this speed, in √(gd); `None` if there are
+    /// none.
+    fn left_alone(
+        &self,
+        before: &[Vector<D>],
+        exit: f64,
+        such: impl Fn(&Touch<D>) -> bool,
+    ) -> Option<Vec<Vector<D>>> {
+        let mut touches = self.touches.clone();
+        for touch in touches.iter_mut().filter(|touch| touch.is_of(0)) {
+            if such(touch) {
+                touch.speed += exit;
+            }
+        }
+        project(before, &touches, 0.0)
+    }
 }
 
 /// What the guard did.
@@ -100,19 +123,20 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
         // In a narrow cone a small exit speed along the normals is a large one
         // along the axis.
         let most = 10.0 * guards.exit_speed;
-        let mut exit = guards.exit_speed;
-        let mut leaving = project(&before, &cluster.touches, exit);
-        if let Some(fast) = &leaving {
+        let leave = |way: &dyn Fn(f64) -> Option<Vec<Vector<D>>>| {
+            let fast = way(guards.exit_speed)?;
             let gained = fast
                 .iter()
                 .zip(&resting)
                 .map(|(fast, rest)| (fast - rest).norm_squared().sqrt())
                 .fold(0.0, f64::max);
             if gained > most {
-                exit *= most / gained;
-                leaving = project(&before, &cluster.touches, exit);
+                way(guards.exit_speed * (most / gained))
+            } else {
+                Some(fast)
             }
-        }
+        };
+        let mut leaving = leave(&|exit| project(&before, &cluster.touches, exit));
         // Where contacts work against each other some grain cannot leave.
         let caught = sleeps && leaving.is_none() && {
             let place = self.world.particle_now(&self.model, particle).position;
@@ -122,6 +146,13 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
                 .ground_velocity(&place, self.world.clock);
             (resting[0] - ground).norm_squared().sqrt() <= most
         };
+        if leaving.is_none() && !caught && run / STUBBORN >= guards.cascade.unwrap_or(run) {
+            // Somebody else cannot leave. At rest within rounding, this one would go on
+            // colliding with what it slides along, so it leaves alone: all its
+            // contacts, or the static ones.
+            leaving = leave(&|exit| cluster.left_alone(&before, exit, |_| true))
+                .or_else(|| leave(&|exit| cluster.left_alone(&before, exit, Touch::is_on_static)));
+        }
         let after = leaving.unwrap_or(resting);
         let mut disturbed = Vec::new();
         for ((&member, velocity), was) in cluster.members.iter().zip(after).zip(before) {
@@ -324,7 +355,8 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
         if near.slack(particle, &one.position) > margin {
             near.list(particle).for_each(|found| look(&found));
         } else {
-            near.for_each_within(particle, farthest, |found| look(&found));
+            self.world
+                .for_each_within(&self.model, particle, farthest, |found| look(&found));
         }
         // By id, so that the outcome does not depend on the grid.
         touched.sort_by_key(|touch| touch.0);

@@ -172,10 +172,16 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
         self.queue.check_entry(particle)?;
         self.leaning.check(particle, body.mode == Mode::Frozen)?;
         let position = flight.position(now - body.since);
-        if !flight.is_at_rest() && !self.world.near.is_tied(particle) {
-            return Err(format!("grain {particle} moves without a list"));
+        self.world.check_aloft(particle)?;
+        if self.world.next_landing(particle) < slot.renewal {
+            return Err(format!("grain {particle} is not told to land"));
         }
-        self.world.near.check_tie(particle, &position)?;
+        if !self.world.is_aloft(particle) {
+            if !flight.is_at_rest() && !self.world.near.is_tied(particle) {
+                return Err(format!("grain {particle} moves without a list"));
+            }
+            self.world.near.check_tie(particle, &position)?;
+        }
         self.world.near.check_bed(particle, &self.world.bodies)?;
         self.world
             .check_glance(&self.model, particle, slot.bound())?;

@@ -74,6 +74,9 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
                 }
                 Source::Particle(particle) => self.carry_out(particle, key, observer),
             }
+            if self.world.aloft.risen() {
+                self.expect_landing();
+            }
             if cfg!(debug_assertions) {
                 self.keep_vigil();
             }
@@ -115,6 +118,10 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
 
     /// A grain may have come to the end of its leash.
     fn renew(&mut self, particle: u32) {
+        if self.world.is_aloft(particle) {
+            self.land(particle);
+            return;
+        }
         let flight = self.world.flight(&self.model, particle);
         let since = self.world.bodies[particle as usize].since;
         let position = flight.position(self.world.clock - since);
@@ -140,8 +147,9 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
     }
 
     /// Lays the grid anew for diameters that have outgrown it.
-    fn rebuild_grid(&mut self) {
+    pub(super) fn rebuild_grid(&mut self) {
         self.lay_grid();
+        self.lift_off();
         for particle in 0..self.world.bodies.len() as u32 {
             self.predict(particle);
         }

@@ -68,7 +68,9 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
                 continue;
             };
             let reach = farthest.min(self.world.largest * self.scale_at(first) + nearing);
-            if reach <= distance || self.world.near.is_everything(particle, distance) {
+            let everything =
+                self.world.aloft.is_empty() && self.world.near.is_everything(particle, distance);
+            if reach <= distance || everything {
                 break;
             }
             looked = Some(reach);
@@ -105,8 +107,7 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
     fn find_within(&self, particle: u32, distance: f64, found: &mut Vec<Found<D>>) {
         found.clear();
         self.world
-            .near
-            .for_each_within(particle, distance, |other| found.push(other));
+            .for_each_within(&self.model, particle, distance, |other| found.push(other));
     }
 
     /// Keeps the bound on all speeds true after a grain's velocity has changed.

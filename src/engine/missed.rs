@@ -119,7 +119,10 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
         let flight = flight.advanced(now - body.since);
         // Growing grains are all predicted anew when the grid is.
         let slot = &self.slots[particle as usize];
-        let entry = slot.key(particle).time.min(self.regrid_at);
+        let mut entry = slot.key(particle).time.min(self.regrid_at);
+        if self.world.is_aloft(particle) {
+            entry = entry.min(self.world.landing(particle));
+        }
         let within = (entry - now).min(1.0e9);
         Ahead {
             position: flight.position(0.0),

@@ -202,6 +202,12 @@ impl<const D: usize> Neighbours<D> {
         ROUND * self.ties[particle as usize].leash
     }
 
+    /// How far from its anchor a grain with a list, or one at rest, reaches as long
+    /// as this grid serves, in d.
+    pub(super) fn reach(&self, particle: u32) -> f64 {
+        self.cells.spot(particle).reach
+    }
+
     /// How far a grain may still move from `position`, in d; negative if too
     /// far already.
     pub(super) fn slack(&self, particle: u32, position: &Vector<D>) -> f64 {

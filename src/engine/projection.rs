@@ -31,6 +31,16 @@ pub(super) struct Touch<const D: usize> {
 }
 
 impl<const D: usize> Touch<D> {
+    /// Whether it is a contact with a static surface.
+    pub(super) fn is_on_static(&self) -> bool {
+        self.other.is_none()
+    }
+
+    /// Whether a grain of the cluster takes part in it.
+    pub(super) fn is_of(&self, place: usize) -> bool {
+        self.one.place == place || self.other.is_some_and(|other| other.place == place)
+    }
+
     /// How fast the two separate.
     fn separation(&self, velocities: &[Vector<D>]) -> f64 {
         let mut relative = velocities[self.one.place];

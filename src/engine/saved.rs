@@ -10,6 +10,7 @@ use std::cmp::Reverse;
 
 use serde::{Deserialize, Serialize};
 
+use crate::engine::aloft::{Aloft, SavedAloft};
 use crate::engine::body::{Body, World, flight_of};
 use crate::engine::consistency::Vigil;
 use crate::engine::counts::{Counts, ModeCounts};
@@ -65,6 +66,7 @@ pub struct Saved<R, E, S, const D: usize> {
     epoch_events: u64,
     collapse: Option<Collapse>,
     escaped: Option<ParticleId>,
+    aloft: Option<SavedAloft<D>>,
 }
 
 /// What is saved of a simulation of a model.
@@ -122,6 +124,7 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
             epoch_events: self.epoch_events,
             collapse: self.collapse.clone(),
             escaped: self.escaped,
+            aloft: self.world.save_aloft(),
         }
     }
 
@@ -165,6 +168,7 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
                 ledger: saved.ledger,
                 blur: saved.blur,
                 glances: Glances::new(saved.epoch),
+                aloft: Aloft::nobody(),
             },
             epoch_events: saved.epoch_events,
             memories: saved.memories,
@@ -189,6 +193,7 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
             ear: None,
             model,
         };
+        restored.restore_aloft(saved.aloft).map_err(wrong)?;
         restored.world.begin_epoch(&restored.model, saved.epoch);
         for id in 0..count as u32 {
             let bound = restored.slots[id as usize].bound();

@@ -229,6 +229,9 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
                         return None;
                     }
                     base = base + after;
+                    if !base.is_finite() {
+                        return None;
+                    }
                     horizon = until - base;
                     flight_a = flight_a.advanced(after);
                     flight_b = flight_b.advanced(after);
@@ -278,6 +281,9 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
                         return None;
                     }
                     base = base + after;
+                    if !base.is_finite() {
+                        return None;
+                    }
                     horizon = until - base;
                     flight = flight.advanced(after);
                     radius += growth * after;
@@ -309,6 +315,10 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
     #[inline]
     pub(super) fn find_renewal(&mut self, particle: u32) {
         let flight = self.world.flight(&self.model, particle);
+        if self.world.is_aloft(particle) {
+            self.slots[particle as usize].renewal = self.world.next_landing(particle);
+            return;
+        }
         let slot = &mut self.slots[particle as usize];
         slot.renewal = Time::NEVER;
         if flight.is_at_rest() {

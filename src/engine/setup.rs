@@ -2,6 +2,7 @@
 
 use std::collections::BinaryHeap;
 
+use crate::engine::aloft::Aloft;
 use crate::engine::body::{Body, World, scale_at};
 use crate::engine::consistency::Vigil;
 use crate::engine::counts::{Counts, ModeCounts};
@@ -14,6 +15,7 @@ use crate::engine::queue::EventQueue;
 use crate::engine::settings::Settings;
 use crate::engine::simulation::Simulation;
 use crate::engine::slot::{Partner, Slot};
+use crate::engine::walls::{check_distance, check_walls};
 use crate::error::SetupError;
 use crate::model::{
     Boundary, CollisionRule, Commands, Dynamics, Flight, MemoryOf, Model, SpinOf, StatePolicy,
@@ -89,6 +91,7 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
                 ledger: Ledger::default(),
                 blur: 0.0,
                 glances: Glances::new(settings.start),
+                aloft: Aloft::nobody(),
             },
             epoch_events: 0,
             memories: vec![MemoryOf::<M, D>::default(); count],
@@ -123,6 +126,7 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
         for particle in 0..count as u32 {
             simulation.tell_started(particle);
         }
+        simulation.lift_off();
         for particle in 0..count as u32 {
             simulation.predict(particle);
         }
@@ -173,6 +177,7 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
         self.tell_started(index);
         self.predict(index);
         self.release_if_static(index);
+        self.expect_landing();
         Ok(id)
     }
 
@@ -279,11 +284,13 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
     fn refuse_contacts_of(&self, particle: u32, one: &Particle<D>) -> Result<(), SetupError> {
         let now = self.world.clock;
         for (place, wall) in self.model.boundary().walls().iter().enumerate() {
+            let id = WallId(place as u16);
+            check_distance(id, wall, &one.position, now)?;
             let depth = one.radius() - wall.distance(&one.position, now);
             if depth > TOLERANCE {
                 return Err(SetupError::OutsideWall {
                     id: ParticleId(particle),
-                    wall: WallId(place as u16),
+                    wall: id,
                     depth,
                     tolerance: TOLERANCE,
                 });
@@ -292,8 +299,7 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
         let mut deepest: Option<(f64, u32)> = None;
         let farthest = one.radius() + 0.5 * self.world.largest * scale_at::<M, D>(&self.model, now);
         self.world
-            .near
-            .for_each_within(particle, farthest, |found| {
+            .for_each_within(&self.model, particle, farthest, |found| {
                 let other = self.world.particle_now(&self.model, found.particle);
                 // Fixed grains may be built up of overlapping ones.
                 if one.mode == Mode::Fixed && other.mode == Mode::Fixed {
@@ -326,6 +332,8 @@ pub(super) fn check_parts<M: Model<D>, const D: usize>(
     model.dynamics().validate()?;
     model.collision_rule().validate()?;
     model.state_policy().validate()?;
+    model.boundary().validate()?;
+    check_walls(model.boundary())?;
     if !settings.start.is_finite() {
         return Err(SetupError::Parameter {
             field: "start",

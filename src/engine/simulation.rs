@@ -15,7 +15,7 @@ use crate::engine::settings::{Collapse, Settings};
 use crate::engine::slot::Slot;
 use crate::engine::transitions::Alarm;
 use crate::model::{Boundary, Commands, Dynamics, EventOf, Flight, MemoryOf, Model, SpinOf};
-use crate::particle::{Particle, ParticleId};
+use crate::particle::{Mode, Particle, ParticleId};
 use crate::time::Time;
 
 /// A simulation: a model, its grains and a clock.
@@ -127,7 +127,8 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
         scale_at::<M, D>(&self.model, time)
     }
 
-    /// Lays the grid, and makes the lists, for where the grains are now.
+    /// Lays the grid for where the grains are now, and makes the lists but for those
+    /// that [fall](Simulation::lift_off).
     pub(super) fn lay_grid(&mut self) {
         let now = self.world.clock;
         let mut largest = self.world.largest * scale_at::<M, D>(&self.model, now);
@@ -161,7 +162,9 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
         }
         self.begin_epoch();
         for particle in 0..count {
-            self.tie_if_moving(particle);
+            if self.world.bodies[particle as usize].mode != Mode::Falling {
+                self.tie_if_moving(particle);
+            }
         }
     }
 
@@ -205,6 +208,7 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
         let after = *clock - body.since;
         let scale = listed_scale::<M, D>(near.largest(), *largest);
         let image = near.turns(particle);
+        let loose = !near.is_tied(particle);
         near.tie(
             particle,
             &flight.position(after),
@@ -214,6 +218,10 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
         if near.turns(particle) != image {
             self.world.glance(&self.model, particle);
         }
+        if loose {
+            self.world.aloft.look_again();
+        }
+        self.world.stay_below(particle);
     }
 }
 

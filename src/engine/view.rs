@@ -1,4 +1,5 @@
 use crate::engine::body::World;
+use crate::engine::cells::Found;
 use crate::model::{
     Boundary, Dynamics, GravityCourse, Model, NearWall, Neighbour, Shape, Surroundings, Wall,
 };
@@ -42,7 +43,7 @@ impl<M: Model<D>, const D: usize> Surroundings<D> for View<'_, M, D> {
         let centre = self.particle(of);
         let scale = crate::engine::body::scale_at::<M, D>(self.model, self.world.clock);
         let farthest = range * 0.5 * (centre.diameter + self.world.largest * scale);
-        self.world.near.for_each_within(of.0, farthest, |found| {
+        let visit = |found: Found<D>| {
             let Some((other, offset)) = self.world.nearest(self.model, &centre, &found) else {
                 return;
             };
@@ -56,7 +57,9 @@ impl<M: Model<D>, const D: usize> Surroundings<D> for View<'_, M, D> {
                     mode: other.mode,
                 });
             }
-        });
+        };
+        self.world
+            .for_each_within(self.model, of.0, farthest, visit);
     }
 
     fn for_each_wall(&self, of: ParticleId, gap: f64, mut visit: impl FnMut(NearWall<D>)) {

@@ -1,5 +1,6 @@
 //! Where the world ends: periods and walls.
 
+use crate::error::SetupError;
 use crate::particle::Vector;
 use crate::time::Time;
 
@@ -68,6 +69,16 @@ pub trait Boundary<const D: usize> {
 
     /// The walls; [`WallId`](crate::WallId) counts along this list, which never changes.
     fn walls(&self) -> &[Self::Wall];
+
+    /// Refuses parameters that are out of range; asked once, before a
+    /// simulation starts.
+    ///
+    /// # Errors
+    ///
+    /// [`SetupError`] with the parameter, its value and what is allowed.
+    fn validate(&self) -> Result<(), SetupError> {
+        Ok(())
+    }
 
     /// The vector from `from` to the nearest periodic image of `to`, in d.
     fn displacement(&self, from: &Vector<D>, to: &Vector<D>) -> Vector<D> {

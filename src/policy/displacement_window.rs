@@ -20,8 +20,10 @@ use crate::time::Time;
 #[serde(deny_unknown_fields, default)]
 pub struct DisplacementWindow {
     /// ε, in d.
+    #[cfg_attr(feature = "program", schemars(extend("exclusiveMinimum" = 0.0, "x-unit" = "d")))]
     pub distance: f64,
     /// τ, in √(d/g).
+    #[cfg_attr(feature = "program", schemars(extend("exclusiveMinimum" = 0.0, "x-unit" = "√(d/g)")))]
     pub window: f64,
 }
 

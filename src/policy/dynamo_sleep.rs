@@ -25,12 +25,16 @@ use crate::time::Time;
 #[serde(deny_unknown_fields, default)]
 pub struct DynamoSleep {
     /// V_sleep, in √(gd).
+    #[cfg_attr(feature = "program", schemars(extend("exclusiveMinimum" = 0.0, "x-unit" = "√(gd)")))]
     pub sleep_speed: f64,
     /// How far apart two collisions of a resting grain may be, in d.
+    #[cfg_attr(feature = "program", schemars(extend("exclusiveMinimum" = 0.0, "x-unit" = "d")))]
     pub distance: f64,
     /// How long they have to be apart, in √(d/g).
+    #[cfg_attr(feature = "program", schemars(extend("exclusiveMinimum" = 0.0, "x-unit" = "√(d/g)")))]
     pub time: f64,
     /// V_wakeup, in √(gd): 0, so that any hit wakes, in the original.
+    #[cfg_attr(feature = "program", schemars(range(min = 0.0), extend("x-unit" = "√(gd)")))]
     pub wake_speed: f64,
 }
 
@@ -60,7 +64,15 @@ impl<const D: usize> RestCondition<D> for DynamoSleep {
     fn validate(&self) -> Result<(), SetupError> {
         positive("sleep_speed", self.sleep_speed)?;
         positive("distance", self.distance)?;
-        positive("time", self.time)
+        positive("time", self.time)?;
+        if self.wake_speed >= 0.0 {
+            return Ok(());
+        }
+        Err(SetupError::Parameter {
+            field: "wake_speed",
+            value: self.wake_speed,
+            allowed: "0 or more is allowed",
+        })
     }
 
     fn at_rest<S: Surroundings<D>>(

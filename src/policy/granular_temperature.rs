@@ -21,8 +21,10 @@ use crate::policy::parameters::positive;
 #[serde(deny_unknown_fields, default)]
 pub struct GranularTemperature {
     /// T below which a neighbourhood is cold, in gd.
+    #[cfg_attr(feature = "program", schemars(extend("exclusiveMinimum" = 0.0, "x-unit" = "gd")))]
     pub temperature: f64,
     /// Neighbours are nearer than this, in units of the distance at contact.
+    #[cfg_attr(feature = "program", schemars(range(min = 1.0, max = 2.0), extend("x-unit" = "σ₁₂")))]
     pub range: f64,
     /// The fewest neighbours of a dense neighbourhood.
     pub least_neighbours: u32,

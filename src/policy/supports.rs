@@ -47,18 +47,17 @@ pub enum Timing {
     /// The clock: every τ_check, as in the paper.
     #[default]
     Polled,
-    /// What happens: a sleeper checks at the instant at which a support changes
-    /// or gravity leaves it, which is foreseen. That is what the clock tends to
-    /// as τ_check → 0. The clock stays where nothing can be foreseen: where the
-    /// dynamics does not say how gravity changes
-    /// ([`GravityCourse::Unknown`]), or fixed grains or walls that support move.
+    /// What happens: at the instant at which a support changes or gravity leaves
+    /// it. That is what the clock tends to as τ_check → 0.
     Events,
 }
 
 /// The self-check of supports.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SelfCheck {
-    /// What has sleepers check.
+    /// What has sleepers check. With [`Timing::Events`] the clock stays where nothing
+    /// can be foreseen: where the dynamics does not say how gravity changes
+    /// ([`GravityCourse::Unknown`]), or fixed grains or walls that support move.
     pub timing: Timing,
     /// τ_check, in √(d/g).
     pub interval: f64,

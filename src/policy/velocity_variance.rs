@@ -21,8 +21,10 @@ use crate::time::Time;
 #[serde(deny_unknown_fields, default)]
 pub struct VelocityVariance {
     /// The speed below which deviation and mean have to be, in √(gd).
+    #[cfg_attr(feature = "program", schemars(extend("exclusiveMinimum" = 0.0, "x-unit" = "√(gd)")))]
     pub speed: f64,
     /// τ, in √(d/g).
+    #[cfg_attr(feature = "program", schemars(extend("exclusiveMinimum" = 0.0, "x-unit" = "√(d/g)")))]
     pub window: f64,
     /// The fewest collisions of a window that counts.
     pub least_collisions: u32,

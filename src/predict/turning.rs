@@ -17,7 +17,9 @@ mod last_digits;
 
 use super::descent::{Descent, quadratic_descent, quartic_descent};
 use super::lead::{self, Lead};
-use super::{DoubleDouble, GapPolynomial, Real, Relative, forecast, screen, wall};
+use super::{
+    DoubleDouble, GapPolynomial, Real, Relative, forecast, screen, wall, wall_by_distance,
+};
 use crate::model::{
     Approach, Crowd, Encounter, Flight, Forecast, LANES, Nook, PolynomialFlight, Predictor, Shape,
     TurningFlight, Wall,
@@ -216,14 +218,10 @@ impl<const D: usize, F: TurningFlight<D>> Predictor<D, F> for Turning {
                         other => other,
                     }
                 } else {
-                    wall::general(encounter, own, 0.0, 0.0, 0.0)
+                    wall_by_distance(encounter, own)
                 }
             }
-            Shape::General {
-                curvature,
-                speed,
-                acceleration,
-            } => wall::general(encounter, own, curvature, speed, acceleration),
+            Shape::General { .. } => wall_by_distance(encounter, own),
         }
     }
 }

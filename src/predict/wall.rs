@@ -2,7 +2,7 @@
 
 use super::descent::{first_root, quadratic_descent};
 use super::{DoubleDouble, Real, forecast, rounded};
-use crate::model::{Encounter, Flight, Forecast, PolynomialFlight, Wall};
+use crate::model::{Encounter, Flight, Forecast, PolynomialFlight, Shape, Wall};
 use crate::particle::Vector;
 
 /// Steps before a curved wall's question is put off.
@@ -12,6 +12,8 @@ const MOST_STEPS: usize = 100;
 const PLANE_CERTAIN: f64 = 32.0;
 /// Sizes below this are safe to multiply.
 const LARGE: f64 = 1.0e140;
+/// No two instants that can be named are farther apart, in √(d/g).
+const LATEST: f64 = 2.0e10;
 /// Rounding of a distance, relative to the numbers it is computed from.
 const ROUNDING: f64 = 8.0 * f64::EPSILON;
 
@@ -110,6 +112,26 @@ fn settle_plane<const D: usize, F: PolynomialFlight<D>, W: Wall<D>>(
     }
 }
 
+/// First contact of a grain with a wall of any form, found from its distance alone:
+/// for predictors of one's own, whatever the flights are.
+///
+/// `acceleration`, in g, bounds that of the flight from its start up to the horizon.
+/// No contact is passed over if that bound, those of [`Wall::shape`] and, to 8 ε
+/// (|x| + |φ| + R), the wall's distances φ are right.
+pub fn wall_by_distance<const D: usize, F: Flight<D>, W: Wall<D>>(
+    encounter: &Encounter<'_, D, F, W>,
+    acceleration: f64,
+) -> Forecast {
+    match encounter.wall.shape() {
+        Shape::Plane { .. } => general(encounter, acceleration, 0.0, 0.0, 0.0),
+        Shape::General {
+            curvature,
+            speed,
+            acceleration: of_wall,
+        } => general(encounter, acceleration, curvature, speed, of_wall),
+    }
+}
+
 /// Any wall, from its distance alone, and any flight whose acceleration has a bound.
 ///
 /// Far from it a grain cannot touch before it has covered the gap. Near it the
@@ -117,7 +139,7 @@ fn settle_plane<const D: usize, F: PolynomialFlight<D>, W: Wall<D>>(
 /// φ + φ′ s − B s²/2 lies below it. The longer of the two steps is taken; neither
 /// passes a contact, if the wall's distances are right to [`ROUNDING`]: φ counts
 /// as less by as much. Contact is where it is twice that or less, and closing.
-pub(super) fn general<const D: usize, F: Flight<D>, W: Wall<D>>(
+fn general<const D: usize, F: Flight<D>, W: Wall<D>>(
     encounter: &Encounter<'_, D, F, W>,
     acceleration: f64,
     curvature: f64,
@@ -137,6 +159,9 @@ pub(super) fn general<const D: usize, F: Flight<D>, W: Wall<D>>(
         let (position, velocity, now) = (flight.position(t), flight.velocity(t), since + t);
         let radius = encounter.radius + growth * t;
         let distance = wall.distance(&position, now);
+        if distance.is_nan() {
+            return Forecast::Never;
+        }
         let normal = wall.normal(&position, now);
         let opening = normal.dot(&(velocity - wall.velocity(&position, now))) - growth;
         let rounding = ROUNDING * (position.norm_squared().sqrt() + distance.abs() + radius);
@@ -166,7 +191,8 @@ pub(super) fn general<const D: usize, F: Flight<D>, W: Wall<D>>(
             advance = advance.max(step.min(covered(margin, speed, acceleration)));
         }
         t += advance;
-        if t >= f64::MAX || t > horizon {
+        // Nor is there one where numbers end.
+        if t.is_nan() || t > LATEST || t > horizon {
             return Forecast::Never;
         }
     }

@@ -7,6 +7,7 @@ use clap::{Args, Parser, Subcommand};
 use crate::program::analyse::AnalyseArguments;
 use crate::program::bench::BenchArguments;
 use crate::program::compare::CompareArguments;
+use crate::program::reference::ReferenceArguments;
 use crate::program::reproduce::ReproduceArguments;
 use crate::program::sweep::{MOST_RUNS, Variation};
 use crate::program::why::WhyArguments;
@@ -172,6 +173,8 @@ pub(super) enum Command {
     Why(WhyArguments),
     /// Print the JSON Schema of scenarios
     Schema,
+    /// Write the reference of commands and scenarios, as Markdown
+    Reference(ReferenceArguments),
     /// Draw the grains of a run as SVG
     Draw(DrawArguments),
     /// Measure packing, contacts and motion on the frames of a run

@@ -123,12 +123,14 @@ impl Checked for Nothing {
     }
 }
 
-/// The parameters of [`IsostaticSupport`] beside the paper's.
+/// Slow in a pit whose contacts hold the grain's weight, or at rest by the
+/// paper's criterion, whose parameters stand elsewhere.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
 pub(super) struct Isostatic {
     /// Static grains nearer than this are contacts, in units of the distance at
     /// contact.
+    #[schemars(range(min = 1.0, max = 2.0), extend("x-unit" = "σ₁₂"))]
     range: f64,
 }
 

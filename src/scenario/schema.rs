@@ -32,7 +32,7 @@ use serde::{Deserialize, Serialize};
 #[serde(deny_unknown_fields)]
 #[schemars(title = "Scenario of grainfall")]
 pub struct Scenario {
-    /// What this is, for people.
+    /// What this is, for people. Left out: none.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub title: Option<String>,
     /// 2 (disks) or 3 (spheres).
@@ -43,11 +43,12 @@ pub struct Scenario {
     pub seed: u64,
     /// How the grains of each generator are numbered: `"drawn"`, as they are drawn,
     /// or `"space"`, so that neighbours have numbers near each other, which makes
-    /// events of more than 10⁴ grains cheaper.
+    /// events of more than 10⁴ grains cheaper. Left out: as drawn.
     #[serde(default, skip_serializing_if = "Numbering::is_drawn")]
     pub numbering: Numbering,
     /// `"none"`, a size (pointing down the last axis), or a vector; in g.
     #[serde(default)]
+    #[schemars(extend("x-unit" = "g"))]
     pub gravity: Gravity,
     /// A drum turns: gravity, as seen from it, or the ground with all that is
     /// fixed or asleep. Left out: nothing turns.
@@ -158,19 +159,24 @@ pub enum Side {
     Periodic {
         /// Where the primary cell begins, in d.
         #[serde(default)]
+        #[schemars(range(min = -1.0e9, max = 1.0e9), extend("x-unit" = "d"))]
         origin: f64,
         /// Length of the period, in d; at least two diameters.
+        #[schemars(range(max = 1.0e9), extend("exclusiveMinimum" = 0.0, "x-unit" = "d"))]
         length: f64,
     },
     /// A wall below, above, or both.
     Walls {
         /// Where the lower wall stands, in d. Left out: there is none.
         #[serde(default, skip_serializing_if = "Option::is_none")]
+        #[schemars(range(min = -1.0e9, max = 1.0e9), extend("x-unit" = "d"))]
         low: Option<f64>,
         /// Where the upper wall stands, in d. Left out: there is none.
         #[serde(default, skip_serializing_if = "Option::is_none")]
+        #[schemars(range(min = -1.0e9, max = 1.0e9), extend("x-unit" = "d"))]
         high: Option<f64>,
         /// Coefficient of restitution of these walls, 0 … 1.
+        #[schemars(range(min = 0.0, max = 1.0))]
         restitution: f64,
     },
 }

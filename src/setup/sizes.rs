@@ -20,30 +20,38 @@ pub enum Sizes {
     /// All the same.
     Equal {
         /// The diameter, in d.
+        #[cfg_attr(feature = "program", schemars(range(min = 1.0e-6, max = 1.0e6), extend("x-unit" = "d")))]
         diameter: f64,
     },
     /// Two sizes.
     Bimodal {
         /// The smaller diameter, in d.
+        #[cfg_attr(feature = "program", schemars(range(min = 1.0e-6, max = 1.0e6), extend("x-unit" = "d")))]
         small: f64,
         /// The larger diameter, in d.
+        #[cfg_attr(feature = "program", schemars(range(min = 1.0e-6, max = 1.0e6), extend("x-unit" = "d")))]
         large: f64,
         /// The probability that a grain is large, in 0 … 1.
+        #[cfg_attr(feature = "program", schemars(range(min = 0.0, max = 1.0)))]
         large_fraction: f64,
     },
     /// Every diameter of an interval is equally probable.
     Uniform {
         /// The smallest diameter, in d.
+        #[cfg_attr(feature = "program", schemars(range(min = 1.0e-6, max = 1.0e6), extend("x-unit" = "d")))]
         least: f64,
         /// The largest diameter, in d.
+        #[cfg_attr(feature = "program", schemars(range(min = 1.0e-6, max = 1.0e6), extend("x-unit" = "d")))]
         most: f64,
     },
     /// The logarithm of the diameter is normally distributed, cut off at three
     /// spreads on either side.
     LogNormal {
         /// The median diameter, in d.
+        #[cfg_attr(feature = "program", schemars(range(min = 1.0e-6, max = 1.0e6), extend("x-unit" = "d")))]
         median: f64,
         /// The standard deviation of ln σ before the cut.
+        #[cfg_attr(feature = "program", schemars(range(min = 0.0, max = 2.0)))]
         spread: f64,
     },
 }

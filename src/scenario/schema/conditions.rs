@@ -8,12 +8,13 @@ pub struct Stop {
     /// At this time, in √(d/g). Left out: at no set time, but a run in which
     /// nothing happens for 10⁶ √(d/g) ends.
     #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(range(min = 0.0, max = 8.0e9), extend("x-unit" = "√(d/g)"))]
     pub time: Option<f64>,
-    /// After this many physical events.
+    /// After this many physical events. Left out: after no set number.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub events: Option<u64>,
     /// When no grain is normal or falling and none is left to drop. Left out:
-    /// true with gravity, false without.
+    /// true with gravity that does not turn, else false.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub all_frozen: Option<bool>,
 }
@@ -24,9 +25,11 @@ pub struct Stop {
 pub struct Output {
     /// Time between the rows of `series.csv`, in √(d/g); 0: the first and the
     /// last only.
+    #[schemars(range(min = 0.0), extend("x-unit" = "√(d/g)"))]
     pub series_every: f64,
     /// Time between the frames of `frames.xyz`, in √(d/g); 0: the first and the
     /// last only.
+    #[schemars(range(min = 0.0), extend("x-unit" = "√(d/g)"))]
     pub frames_every: f64,
     /// Whether every physical event is written to `events.csv`.
     pub events: bool,
@@ -34,6 +37,7 @@ pub struct Output {
     /// taken, in √(d/g); it ends at 0.8 of the last landing. Left out: a
     /// quarter of the last landing.
     #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(range(min = 0.0), extend("x-unit" = "√(d/g)"))]
     pub mean_normal_from: Option<f64>,
 }
 

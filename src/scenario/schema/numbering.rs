@@ -10,8 +10,7 @@ pub enum Numbering {
     /// As they are drawn.
     #[default]
     Drawn,
-    /// Along a curve that fills space, see
-    /// [`sort_in_space`](crate::setup::sort_in_space).
+    /// Along a curve that fills space (`setup::sort_in_space` in the library).
     Space,
 }
 

@@ -10,18 +10,23 @@ use serde::{Deserialize, Deserializer, Serialize, Serializer};
 #[serde(deny_unknown_fields, default)]
 pub struct Parameters {
     /// α: restitution between mobile grains, 0 … 1.
+    #[schemars(range(min = 0.0, max = 1.0))]
     pub restitution: f64,
     /// α_frozen: restitution on frozen and fixed grains, 0 … 1.
+    #[schemars(range(min = 0.0, max = 1.0))]
     pub frozen_restitution: f64,
     /// V_c: collisions with a smaller normal closing speed are elastic, in
     /// √(gd); 0 switches that off.
+    #[schemars(range(min = 0.0), extend("x-unit" = "√(gd)"))]
     pub elastic_speed: f64,
     /// Whether V_c holds on frozen and fixed grains too.
     pub elastic_on_static: bool,
     /// V_sleep: slower grains may fall asleep, in √(gd); 0: nobody does.
+    #[schemars(range(min = 0.0), extend("x-unit" = "√(gd)"))]
     pub sleep_speed: f64,
     /// V_wakeup: a frozen grain wakes when hit with a greater normal closing
     /// speed, in √(gd); or `"never"`.
+    #[schemars(extend("x-unit" = "√(gd)"))]
     pub wake_speed: Threshold,
 }
 
@@ -114,12 +119,15 @@ pub struct Guards {
     /// Normal speed with which a projected grain leaves its contacts, in
     /// √(gd). Left out: a tenth of V_c.
     #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(range(min = 0.0), extend("x-unit" = "√(gd)"))]
     pub exit_speed: Option<f64>,
     /// Least normal speed after any contact with a static grain or a wall, in
     /// √(gd); 0 switches that off.
+    #[schemars(range(min = 0.0), extend("x-unit" = "√(gd)"))]
     pub floor_speed: f64,
     /// How long the same pair may not collide again after an elastic contact
     /// with a static grain, in √(d/g); 0 switches that off.
+    #[schemars(range(min = 0.0), extend("x-unit" = "√(d/g)"))]
     pub hold: f64,
     /// The run stops as collapsed when one grain has made this many collisions
     /// at one instant; 0: it goes on for ever.

@@ -20,12 +20,14 @@ pub enum Turns {
 #[serde(deny_unknown_fields)]
 pub struct Rotation {
     /// Ω of the drum, in radians per √(d/g); positive from the first axis towards
-    /// the last. 0.075 in the paper.
+    /// the last. 0.075 in the paper. Its size is 1e-6 or more.
+    #[schemars(range(min = -1000.0, max = 1000.0), extend("x-unit" = "1/√(d/g)"))]
     pub angular_velocity: f64,
     /// `"gravity"`, as seen from the drum, or `"ground"`, as seen from outside.
     #[serde(default)]
     pub of: Turns,
-    /// Gravity turns in steps of so long, in √(d/g), instead of continuously.
+    /// Gravity turns in steps of so long, in √(d/g). Left out: continuously.
     #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(range(min = 1.0e-6, max = 1.0e6), extend("x-unit" = "√(d/g)"))]
     pub step: Option<f64>,
 }

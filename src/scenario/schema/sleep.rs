@@ -33,6 +33,7 @@ pub struct Sleep {
     /// How long it is stored, in √(d/g). Left out: the paper's
     /// 2 V_sleep/((1 − α_frozen) g).
     #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(range(min = 0.0), extend("x-unit" = "√(d/g)"))]
     pub store_time: Option<f64>,
     /// Whether grains may fall asleep on walls.
     pub wall_supports: bool,
@@ -40,6 +41,7 @@ pub struct Sleep {
     pub keep_history: bool,
     /// How far ahead the next collision of a grain that falls asleep is
     /// looked for, in √(d/g).
+    #[schemars(extend("exclusiveMinimum" = 0.0, "x-unit" = "√(d/g)"))]
     pub horizon: f64,
 }
 
@@ -73,9 +75,11 @@ pub struct SelfCheck {
     #[serde(default)]
     pub timing: Timing,
     /// τ_check: how often, in √(d/g).
+    #[schemars(range(min = 1.0e-6), extend("x-unit" = "√(d/g)"))]
     pub interval: f64,
     /// How near a support has to be, in units of the distance at contact.
     #[serde(default = "default_support_range")]
+    #[schemars(range(min = 1.0, max = 2.0), extend("x-unit" = "σ₁₂"))]
     pub support_range: f64,
     /// Whether normal grains above count as supports.
     #[serde(default = "default_true")]

@@ -21,16 +21,20 @@ use crate::setup::{self, Sizes};
 pub struct Source {
     /// One grain: its centre, in d.
     #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(extend("x-unit" = "d"))]
     pub position: Option<Vec<f64>>,
     /// With `position`: its velocity, in √(gd); 0 if left out.
     #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(extend("x-unit" = "√(gd)"))]
     pub velocity: Option<Vec<f64>>,
     /// With `position`: its diameter, in d; 1 if left out.
     #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(range(max = 1.0e9), extend("exclusiveMinimum" = 0.0, "x-unit" = "d"))]
     pub diameter: Option<f64>,
     /// With `position`: its mass, in m; its diameter to the power of the
     /// dimension if left out.
     #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(range(max = 1.0e9), extend("exclusiveMinimum" = 0.0, "x-unit" = "m"))]
     pub mass: Option<f64>,
     /// With `position`: `"normal"` (the default), `"falling"`, `"frozen"` or
     /// `"fixed"`.
@@ -64,8 +68,10 @@ pub struct Source {
 #[serde(deny_unknown_fields, default)]
 pub struct Base {
     /// How thick, in d.
+    #[schemars(range(max = 1.0e9), extend("exclusiveMinimum" = 0.0, "x-unit" = "d"))]
     pub thickness: f64,
     /// Height of its bottom along the last axis, in d.
+    #[schemars(range(min = -1.0e9, max = 1.0e9), extend("x-unit" = "d"))]
     pub bottom: f64,
     /// Diameters of its grains.
     pub sizes: Sizes,
@@ -88,16 +94,20 @@ impl Default for Base {
 #[serde(deny_unknown_fields)]
 pub struct Rain {
     /// How many grains.
+    #[schemars(range(min = 1, max = 10_000_000))]
     pub count: usize,
     /// Volume of the grains over the volume of the column.
     #[serde(default = "default_rain_fraction")]
+    #[schemars(extend("exclusiveMinimum" = 0.0, "exclusiveMaximum" = 1.0))]
     pub packing_fraction: f64,
     /// How fast they fall, in √(gd).
     #[serde(default = "default_fall_speed")]
+    #[schemars(range(max = 1.0e9), extend("exclusiveMinimum" = 0.0, "x-unit" = "√(gd)"))]
     pub fall_speed: f64,
     /// Height of the lowest grain's lowest point at the start, in d. Left out:
     /// the highest point of the grains listed before, or the floor.
     #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(range(min = -1.0e9, max = 1.0e9), extend("x-unit" = "d"))]
     pub bottom: Option<f64>,
     /// Their diameters.
     #[serde(default)]
@@ -118,11 +128,14 @@ fn default_fall_speed() -> f64 {
 #[serde(deny_unknown_fields)]
 pub struct Gas {
     /// How many grains.
+    #[schemars(range(min = 1, max = 10_000_000))]
     pub count: usize,
     /// Volume of the grains over the volume of the box.
+    #[schemars(extend("exclusiveMinimum" = 0.0, "exclusiveMaximum" = 1.0))]
     pub packing_fraction: f64,
-    /// ⟨m v²⟩/D.
+    /// T = ⟨m v²⟩/D. Without gravity the unit of time is yours, and so that of v.
     #[serde(default = "default_temperature")]
+    #[schemars(range(min = 0.0), extend("x-unit" = "m v²"))]
     pub temperature: f64,
     /// Proportions of the box, one number per axis. Left out: all equal.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
@@ -144,14 +157,19 @@ fn default_temperature() -> f64 {
 #[serde(deny_unknown_fields, default)]
 pub struct Drum {
     /// From the axis to the centres of the wall's grains, in d.
+    #[schemars(range(min = 2.5, max = 1.0e4), extend("x-unit" = "d"))]
     pub radius: f64,
     /// How many rings of grains make the wall; 1 in two dimensions.
+    #[schemars(range(min = 1, max = 10_000))]
     pub rings: usize,
     /// Distance of the rings, in d.
+    #[schemars(range(min = 1.0, max = 1.3), extend("x-unit" = "d"))]
     pub ring_spacing: f64,
     /// Distance of the grains along a ring, in d, at least.
+    #[schemars(range(min = 1.0, max = 1.3), extend("x-unit" = "d"))]
     pub arc_spacing: f64,
     /// Up to which height above the axis it is filled, in d.
+    #[schemars(range(min = -1.0e4, max = 1.0e4), extend("x-unit" = "d"))]
     pub level: f64,
 }
 
@@ -208,14 +226,17 @@ impl From<Drum> for setup::Drum {
 #[serde(deny_unknown_fields)]
 pub struct OneByOne {
     /// How many grains.
+    #[schemars(range(min = 1, max = 10_000_000))]
     pub count: usize,
     /// How far above the highest surface the lowest point of the new grain
     /// starts, in d.
     #[serde(default = "default_clearance")]
+    #[schemars(range(min = 0.0, max = 1.0e9), extend("x-unit" = "d"))]
     pub clearance: f64,
     /// How fast they fall, in √(gd), at constant velocity until the first
     /// collision.
     #[serde(default = "default_fall_speed")]
+    #[schemars(range(max = 1.0e9), extend("exclusiveMinimum" = 0.0, "x-unit" = "√(gd)"))]
     pub fall_speed: f64,
     /// Their diameters.
     #[serde(default)]
