@@ -92,7 +92,7 @@ pub mod program;
 pub mod scenario;
 
 pub use error::SetupError;
-pub use particle::{Mode, Particle, ParticleId, Vector, WallId};
+pub use particle::{Mode, Particle, ParticleId, Vector, WallId, along};
 pub use time::Time;
 
 /// The listings of the README and of the book, compiled and run by `cargo test`.
@@ -108,6 +108,14 @@ mod book {
     struct Drum;
     #[doc = include_str!("../book/src/own-criterion.md")]
     struct OwnCriterion;
+    #[doc = include_str!("../book/src/own-collision-rule.md")]
+    struct OwnCollisionRule;
+    #[doc = include_str!("../book/src/own-boundary.md")]
+    struct OwnBoundary;
+    #[doc = include_str!("../book/src/own-dynamics.md")]
+    struct OwnDynamics;
+    #[doc = include_str!("../book/src/own-predictor.md")]
+    struct OwnPredictor;
     #[doc = include_str!("../book/src/prediction.md")]
     struct Prediction;
     #[doc = include_str!("../book/src/refusals.md")]

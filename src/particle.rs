@@ -7,6 +7,19 @@ use serde::{Deserialize, Serialize};
 /// A vector in `D` dimensions.
 pub type Vector<const D: usize> = nalgebra::SVector<f64, D>;
 
+/// A vector along one axis, from 0, of this length; nothing along the others. The
+/// last axis, `D - 1`, points up.
+///
+/// ```
+/// use grainfall::{Vector, along};
+///
+/// assert_eq!(along::<3>(2, -1.0), Vector::<3>::new(0.0, 0.0, -1.0));
+/// ```
+#[must_use]
+pub fn along<const D: usize>(axis: usize, length: f64) -> Vector<D> {
+    Vector::from_fn(|row, _| if row == axis { length } else { 0.0 })
+}
+
 /// The name of a grain: its place in the list the simulation was given,
 /// counted from 0, then in the order of insertion. It never changes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]

@@ -229,6 +229,9 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
                         return None;
                     }
                     base = base + after;
+                    if !base.is_finite() {
+                        return None;
+                    }
                     horizon = until - base;
                     flight_a = flight_a.advanced(after);
                     flight_b = flight_b.advanced(after);
@@ -278,6 +281,9 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
                         return None;
                     }
                     base = base + after;
+                    if !base.is_finite() {
+                        return None;
+                    }
                     horizon = until - base;
                     flight = flight.advanced(after);
                     radius += growth * after;

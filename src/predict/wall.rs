@@ -12,6 +12,8 @@ const MOST_STEPS: usize = 100;
 const PLANE_CERTAIN: f64 = 32.0;
 /// Sizes below this are safe to multiply.
 const LARGE: f64 = 1.0e140;
+/// No two instants that can be named are farther apart, in √(d/g).
+const LATEST: f64 = 2.0e10;
 /// Rounding of a distance, relative to the numbers it is computed from.
 const ROUNDING: f64 = 8.0 * f64::EPSILON;
 
@@ -157,6 +159,9 @@ fn general<const D: usize, F: Flight<D>, W: Wall<D>>(
         let (position, velocity, now) = (flight.position(t), flight.velocity(t), since + t);
         let radius = encounter.radius + growth * t;
         let distance = wall.distance(&position, now);
+        if distance.is_nan() {
+            return Forecast::Never;
+        }
         let normal = wall.normal(&position, now);
         let opening = normal.dot(&(velocity - wall.velocity(&position, now))) - growth;
         let rounding = ROUNDING * (position.norm_squared().sqrt() + distance.abs() + radius);
@@ -186,7 +191,8 @@ fn general<const D: usize, F: Flight<D>, W: Wall<D>>(
             advance = advance.max(step.min(covered(margin, speed, acceleration)));
         }
         t += advance;
-        if t >= f64::MAX || t > horizon {
+        // Nor is there one where numbers end.
+        if t.is_nan() || t > LATEST || t > horizon {
             return Forecast::Never;
         }
     }
