@@ -419,7 +419,6 @@ fn main() -> Result<(), SetupError> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use grainfall::model::{Occurrence, OccurrenceKind};
 
     fn is_on_the_polygon<const D: usize>() {
         for (impact, (time, off)) in (1..).zip(billiard::<D>(5.0, 200).unwrap()) {
@@ -448,8 +447,8 @@ mod tests {
                 state_policy: Never,
                 boundary,
             };
-            let mut place = along(D - 1, 9.0);
-            place[out] = 4.0;
+            let mut place: Vector<D> = along(D - 1, 5.5);
+            place[out] = 9.0;
             let mut simulation =
                 Simulation::new(model, vec![Particle::new(place, Vector::zeros())]).unwrap();
             let state = |impact| {
@@ -467,7 +466,7 @@ mod tests {
                     x[D - 1],
                 ]
             };
-            (1..=30).map(state).collect()
+            (1..=12).map(state).collect()
         }
         #[derive(Debug)]
         struct Slopes([Plane<2>; 2]);
@@ -480,29 +479,21 @@ mod tests {
                 &self.0
             }
         }
-        let cone = Cone::new(2.5, 50.0, 1.0).unwrap();
+        let cone = Cone::new(2.5, 30.0, 0.5).unwrap();
         let [out, up] = cone.normal;
         let slope = |side: f64| Plane {
             normal: Vector::<2>::new(side * out, up),
             offset: 2.5 * out,
-            restitution: 1.0,
+            restitution: 0.5,
         };
         let wanted = impacts(Slopes([slope(1.0), slope(-1.0)]), 0);
         let in_the_plane = impacts(Hopper::<2>::new(cone, -40.0), 0);
         let in_space = impacts(Hopper::<3>::new(cone, -40.0), 1);
-        let mut compared = 0;
         for (hit, wanted) in wanted.iter().enumerate() {
-            let [_, _, _, x, z] = *wanted;
-            // Until one of them falls through the hole, which the slopes have not.
-            if (x.abs() - cone.hole) * cone.slope[0] + z * cone.slope[1] < 0.1 {
-                break;
-            }
-            compared += 1;
             for (part, value) in wanted.iter().enumerate() {
                 let off = [in_the_plane[hit][part] - value, in_space[hit][part] - value];
-                assert!(off.iter().all(|off| off.abs() < 1.0e-10), "{hit}: {off:?}");
+                assert!(off.iter().all(|off| off.abs() < 1.0e-11), "{hit}: {off:?}");
             }
         }
-        assert!(compared >= 2, "{compared}");
     }
 }

@@ -300,7 +300,10 @@ where
     let model = Parts {
         dynamics,
         predictor,
-        collision_rule: Restitution::constant(0.7),
+        collision_rule: Restitution {
+            elastic_speed: 1.0e-3,
+            ..Restitution::constant(0.7)
+        },
         state_policy: Never,
         boundary: Cuboid::new(sides)?,
     };
@@ -465,7 +468,6 @@ mod tests {
             simulation.run(&Limits::events(250 * events), &mut ());
             let audit = simulation.audit();
             assert_eq!(audit.missed, []);
-            println!("{D} {:e}", audit.deepest);
             assert!(audit.deepest < 1.0e-12, "{:e}", audit.deepest);
         }
         assert!(
@@ -473,7 +475,8 @@ mod tests {
             "{:e}",
             simulation.max_overlap()
         );
-        assert!(simulation.counts().pair > 100 && simulation.counts().frozen > 100);
+        let counts = *simulation.counts();
+        assert!(counts.pair > 20 && counts.frozen > 20, "{counts:?}");
         let ledger = simulation.energy_ledger();
         assert!(ledger.relative_error().abs() < 1.0e-12, "{ledger:?}");
     }

@@ -15,7 +15,7 @@ use grainfall::model::{Approach, Encounter, Flight, Forecast, Parts, Predictor, 
 use grainfall::policy::Never;
 use grainfall::predict::Polynomial;
 use grainfall::setup::{Gas, seeded};
-use grainfall::{SetupError, Vector, along};
+use grainfall::{SetupError, Vector};
 use rand::RngExt;
 
 /// Contacts of straight flights, from the quadratic formula in plain numbers.

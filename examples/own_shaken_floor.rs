@@ -148,8 +148,8 @@ fn out_of_step<const D: usize>(
     Ok(late)
 }
 
-/// A bed of grains on the floor: the mean height of their centres, in d, from 20 to
-/// 40 periods on, and the work that the floor has done, in mgd a period.
+/// A bed of grains on the floor: the mean height of their centres, in d, from 10 to
+/// 20 periods on, and the work that the floor has done, in mgd a period.
 fn bed<const D: usize>(shaker: Shaker, count: usize) -> Result<(f64, f64), SetupError> {
     let rows = WIDTH as usize;
     let place = |grain: usize| {
@@ -171,10 +171,10 @@ fn bed<const D: usize>(shaker: Shaker, count: usize) -> Result<(f64, f64), Setup
     };
     let mut bed = shaken::<D>(shaker, rule, grains)?;
     let (mut heights, mut samples) = (0.0, 0);
-    for sample in 0..=400 {
+    for sample in 0..=200 {
         let time = Time::from_units(0.1 * f64::from(sample) * shaker.period);
         bed.run(&Limits::until(time), &mut ());
-        if sample >= 200 {
+        if sample >= 100 {
             let sum: f64 = bed
                 .snapshot()
                 .iter()
@@ -184,13 +184,13 @@ fn bed<const D: usize>(shaker: Shaker, count: usize) -> Result<(f64, f64), Setup
             samples += 1;
         }
     }
-    let work = bed.energy_ledger().moving / 40.0;
+    let work = bed.energy_ledger().moving / 20.0;
     Ok((heights / f64::from(samples), work))
 }
 
 fn main() -> Result<(), SetupError> {
     let shaker = Shaker {
-        amplitude: 0.2,
+        amplitude: 0.1,
         period: 2.0,
         restitution: 0.6,
     };
@@ -206,14 +206,14 @@ fn main() -> Result<(), SetupError> {
         );
     }
     println!("a bed of grains, ε = 0.9: mean height, work of the floor a period");
-    for amplitude in [0.1, 0.2, 0.4] {
+    for amplitude in [0.15, 0.2, 0.3] {
         let shaker = Shaker {
             amplitude,
             restitution: 0.9,
             ..shaker
         };
         let (plane, work) = bed::<2>(shaker, 50)?;
-        let (space, more) = bed::<3>(shaker, 300)?;
+        let (space, more) = bed::<3>(shaker, 200)?;
         let peak = amplitude * shaker.rate() * shaker.rate();
         println!(
             "  A ω² = {peak:.2} g: {plane:.2} d, {work:.1} mgd (2D); {space:.2} d, {more:.1} mgd (3D)"
@@ -227,13 +227,13 @@ mod tests {
     use super::*;
 
     const SHAKER: Shaker = Shaker {
-        amplitude: 0.2,
+        amplitude: 0.1,
         period: 2.0,
         restitution: 0.6,
     };
 
-    /// The orbit of period T is an exact one, and it attracts: what rounding does to
-    /// it dies out.
+    /// The orbit of period T is an exact one, and it attracts, for A ω² sin φ = 0.6 g is
+    /// less than 2 (1 + ε²)/(1 + ε)² g: what rounding does to it dies out.
     fn stays_in_step<const D: usize>() {
         let first = in_step(SHAKER);
         for (impact, late) in out_of_step::<D>(SHAKER, first, 300)
@@ -241,10 +241,7 @@ mod tests {
             .iter()
             .enumerate()
         {
-            if impact < 20 {
-                println!("{impact}: {late:e}");
-            }
-            assert!(late.abs() < 1.0e-12, "{impact}: {late:e}");
+            assert!(late.abs() < 1.0e-13, "{impact}: {late:e}");
         }
         let late = out_of_step::<D>(SHAKER, first - 0.01, 300).unwrap();
         assert!((late[299] - 0.01).abs() < 1.0e-12, "{:e}", late[299]);
@@ -263,11 +260,19 @@ mod tests {
             let place = Vector::<2>::new(1.2 * f64::from(site), 1.0 + 0.1 * f64::from(site % 3));
             grains.push(Particle::new(place, Vector::zeros()));
         }
-        let rule = Restitution::constant(0.9);
-        let mut bed = shaken::<2>(SHAKER, rule, grains).unwrap();
-        bed.run(&Limits::until(Time::from_units(40.0)), &mut ());
+        // Thrown up by more than its weight; the cut-off lets nobody creep.
+        let shaker = Shaker {
+            amplitude: 0.2,
+            ..SHAKER
+        };
+        let rule = Restitution {
+            elastic_speed: 1.0e-2,
+            ..Restitution::constant(0.9)
+        };
+        let mut bed = shaken::<2>(shaker, rule, grains).unwrap();
+        bed.run(&Limits::until(Time::from_units(20.0)), &mut ());
         let ledger = bed.energy_ledger();
-        assert!(ledger.moving > 1.0 && ledger.wall < -1.0, "{ledger:?}");
+        assert!(ledger.moving > 1.0 && ledger.wall < -0.5, "{ledger:?}");
         assert!(ledger.relative_error().abs() < 1.0e-12, "{ledger:?}");
         assert!(bed.audit().missed.is_empty());
         assert!(bed.max_overlap() < 1.0e-12);
