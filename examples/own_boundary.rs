@@ -288,13 +288,13 @@ fn hopper<const D: usize>(
         },
         state_policy: SlowDescent {
             wall_supports: true,
-            ..SlowDescent::with_threshold(0.2)
+            ..SlowDescent::with_threshold(0.3)
         },
         boundary: closed,
     };
     let mut full = Simulation::new(model.clone(), poured(&closed, layers))?;
     let limits = Limits {
-        time: Time::from_units(200.0),
+        time: Time::from_units(60.0),
         ..Limits::all_frozen()
     };
     let why = full.run(&limits, &mut ());
@@ -318,7 +318,7 @@ fn hopper<const D: usize>(
     let model = model.with_boundary(open).with_policy(Never);
     let mut emptying = Simulation::new(model, grains)?;
     let mut above = Vec::new();
-    for time in 0..=20 {
+    for time in 0..=12 {
         emptying.run(&Limits::until(Time::from_units(f64::from(time))), &mut ());
         let grains = emptying.snapshot();
         above.push(
@@ -327,7 +327,7 @@ fn hopper<const D: usize>(
                 .filter(|grain| grain.position[D - 1] > 0.0)
                 .count(),
         );
-        if time == 4 {
+        if time == 3 {
             show("open", &grains, emptying.time(), &open);
         }
     }
@@ -401,12 +401,13 @@ fn main() -> Result<(), SetupError> {
 
     println!("a hopper of 50°, its hole 5 d wide");
     let cone = Cone::new(2.5, 50.0, 0.4)?;
-    let plane = hopper::<2>(cone, 20, &mut record)?;
-    let space = hopper::<3>(cone, 7, &mut record)?;
+    let plane = hopper::<2>(cone, 8, &mut record)?;
+    let space = hopper::<3>(cone, 3, &mut record)?;
     for (dimension, found) in [("2D", plane), ("3D", space)] {
         println!(
-            "  {dimension}: {} grains, asleep at t = {:.2}, {:.0e} d in a wall; then opened:",
-            found.above[0], found.asleep_at, found.deepest
+            "  {dimension}: {} grains, all asleep at t = {:.2}, {:.0e} d from a wall at least; \
+             opened:",
+            found.above[0], found.asleep_at, -found.deepest
         );
         println!(
             "    above the hole after 0, 1, 2 … √(d/g): {:?}",
@@ -432,6 +433,53 @@ mod tests {
     fn a_billiard_follows_a_polygon() {
         is_on_the_polygon::<2>();
         is_on_the_polygon::<3>();
+    }
+
+    fn fills_and_empties<const D: usize>() {
+        let cone = Cone::new(2.5, 50.0, 0.4).unwrap();
+        let found = hopper::<D>(cone, 3, &mut |_, _, _, _| {}).unwrap();
+        assert!(found.asleep_at < 60.0 && found.above[0] > 15, "{found:?}");
+        assert!(found.deepest < 1.0e-13, "{found:?}");
+        assert_eq!(found.above.last(), Some(&0), "{found:?}");
+    }
+
+    #[test]
+    fn a_hopper_holds_grains_until_it_is_opened() {
+        fills_and_empties::<2>();
+        fills_and_empties::<3>();
+    }
+
+    #[test]
+    fn what_cannot_be_is_refused() {
+        let said = Cone::new(0.8, 50.0, 0.4)
+            .err()
+            .map(|error| error.to_string());
+        let wanted = "hole is 0.8; a radius greater than 1 is allowed";
+        assert_eq!(said.as_deref(), Some(wanted));
+        // The engine looks at walls itself, too.
+        let small = |radius, restitution| {
+            let model = Parts {
+                dynamics: ForceFree,
+                predictor: Polynomial,
+                collision_rule: Restitution::elastic(),
+                state_policy: Never,
+                boundary: Single([Bowl {
+                    radius,
+                    restitution,
+                }]),
+            };
+            let grain = Particle::new(Vector::<2>::new(3.0, 0.0), Vector::zeros());
+            Simulation::new(model, vec![grain])
+                .err()
+                .map(|error| error.to_string())
+        };
+        assert_eq!(small(5.0, 1.0), None);
+        let wanted = "wall 0: restitution is 1.5; 0 … 1 is allowed";
+        assert_eq!(small(5.0, 1.5).as_deref(), Some(wanted));
+        let wanted = "wall 0: curvature is -2; a bound, 0 or more, is allowed";
+        assert_eq!(small(0.5, 1.0).as_deref(), Some(wanted));
+        let wanted = "grain 0 reaches 5e-1 d beyond wall 0; it may touch, to within 1e-9 d";
+        assert_eq!(small(3.0, 1.0).as_deref(), Some(wanted));
     }
 
     /// In a plane through the axis of a cone a grain bounces as between two planes,

@@ -325,9 +325,15 @@ fn lattice<const D: usize>() -> Vec<Particle<D>> {
         .collect()
 }
 
-/// Charges of both signs, alternating, in a field along the first axis.
+/// The sign of a grain's charge.
+fn is_positive(site: usize) -> bool {
+    (site / 6) % 2 == 0
+}
+
+/// Charges of both signs, six of one, then six of the other, in a field along the
+/// first axis.
 fn alternating<const D: usize>(count: usize) -> Charged<D> {
-    let pull = |site| along(0, if site % 2 == 0 { 0.3 } else { -0.3 });
+    let pull = |site| along(0, if is_positive(site) { 0.3 } else { -0.3 });
     Charged {
         gravity: along(D - 1, -1.0),
         pulls: (0..count).map(pull).collect(),
@@ -362,11 +368,13 @@ fn sorted<const D: usize>() -> Result<f64, SetupError> {
     let count = grains.len();
     let simulation = in_a_box(alternating(count), Polynomial, grains)?;
     let after = report(simulation, 6.0, &mut ());
-    let mean = |sign: usize| {
-        let chosen = after.iter().skip(sign).step_by(2);
-        chosen.map(|grain| grain.position[0]).sum::<f64>() / (count / 2) as f64
+    let mean = |sign: bool| {
+        let places = after.iter().enumerate();
+        let chosen = places.filter(|(site, _)| is_positive(*site) == sign);
+        let sum: f64 = chosen.map(|(_, grain)| grain.position[0]).sum();
+        sum / (count / 2) as f64
     };
-    Ok(mean(0) - mean(1))
+    Ok(mean(true) - mean(false))
 }
 
 /// The speed at which a grain with drag hits the floor, `height` d below it.
@@ -409,7 +417,10 @@ mod tests {
         let mut places = [Vector::repeat(11.0); 2];
         (places[0][0], places[1][0]) = (2.0, 5.0);
         let grains = places.map(|place| Particle::new(place, Vector::zeros()));
-        let dynamics = alternating::<D>(2);
+        let dynamics = Charged {
+            gravity: along(D - 1, -1.0),
+            pulls: vec![along(0, 0.3), along(0, -0.3)],
+        };
         let mut pair = in_a_box(dynamics, Polynomial, grains.to_vec()).unwrap();
         let mut first = None;
         pair.run(&Limits::events(1), &mut |event: &Occurrence<D>| {

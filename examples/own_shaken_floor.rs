@@ -151,19 +151,19 @@ fn out_of_step<const D: usize>(
 /// A bed of grains on the floor: the mean height of their centres, in d, from 10 to
 /// 20 periods on, and the work that the floor has done, in mgd a period.
 fn bed<const D: usize>(shaker: Shaker, count: usize) -> Result<(f64, f64), SetupError> {
-    let rows = WIDTH as usize;
     let place = |grain: usize| {
         let mut site = grain;
         let mut place = Vector::zeros();
         for axis in 0..D - 1 {
-            place[axis] = (site % rows) as f64 + 0.02 * (grain % (5 + axis)) as f64;
-            site /= rows;
+            // Nine side by side, not quite in line.
+            place[axis] = 1.2 * (site % 9) as f64 + 0.02 * (grain % (5 + axis)) as f64;
+            site /= 9;
         }
-        place[D - 1] = 1.0 + 1.05 * site as f64;
+        place[D - 1] = 1.0 + 1.2 * site as f64;
         place
     };
     let grains = (0..count)
-        .map(|grain| Particle::new(place(grain) * 1.1, Vector::zeros()))
+        .map(|grain| Particle::new(place(grain), Vector::zeros()))
         .collect();
     let rule = Restitution {
         elastic_speed: 1.0e-2,
