@@ -310,11 +310,11 @@ fn hopper<const D: usize>(
         println!("    {:?} are still awake", full.mode_counts());
     }
 
-    // The gate opens: the same grains, awake, over a floor far below.
+    // The gate opens: the same grains, awake, over a floor 12 d below.
     for grain in &mut grains {
         grain.mode = Mode::Normal;
     }
-    let open = Hopper::<D>::new(cone, -40.0);
+    let open = Hopper::<D>::new(cone, -12.0);
     let model = model.with_boundary(open).with_policy(Never);
     let mut emptying = Simulation::new(model, grains)?;
     let mut above = Vec::new();
