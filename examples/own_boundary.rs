@@ -271,12 +271,15 @@ struct Emptied {
     above: Vec<usize>,
 }
 
+/// Is shown the grains, by a name, at a time and in a hopper.
+type Show<'a, const D: usize> = dyn FnMut(&str, &[Particle<D>], Time, &Hopper<D>) + 'a;
+
 /// Pours grains into a closed hopper, lets them fall asleep and opens it; `show` is
 /// shown the grains on the way.
 fn hopper<const D: usize>(
     cone: Cone,
     layers: usize,
-    show: &mut dyn FnMut(&str, &[Particle<D>], Time, &Hopper<D>),
+    show: &mut Show<'_, D>,
 ) -> Result<Emptied, SetupError> {
     let closed = Hopper::<D>::new(cone, 0.0);
     let model = Parts {
@@ -292,7 +295,7 @@ fn hopper<const D: usize>(
         },
         boundary: closed,
     };
-    let mut full = Simulation::new(model.clone(), poured(&closed, layers))?;
+    let mut full = Simulation::new(model, poured(&closed, layers))?;
     let limits = Limits {
         time: Time::from_units(60.0),
         ..Limits::all_frozen()

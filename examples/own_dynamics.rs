@@ -327,7 +327,7 @@ fn lattice<const D: usize>() -> Vec<Particle<D>> {
 
 /// The sign of a grain's charge.
 fn is_positive(site: usize) -> bool {
-    (site / 6) % 2 == 0
+    (site / 6).is_multiple_of(2)
 }
 
 /// Charges of both signs, six of one, then six of the other, in a field along the
