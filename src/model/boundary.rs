@@ -37,6 +37,8 @@ pub enum Shape<const D: usize> {
 }
 
 /// A wall, known by the distance of points from it.
+///
+/// `examples/own_shaken_floor.rs` shows how to write one.
 pub trait Wall<const D: usize> {
     /// Signed distance of a point from the wall, in d; positive where grains
     /// may be.
@@ -58,6 +60,8 @@ pub trait Wall<const D: usize> {
 }
 
 /// Where the world ends along each axis.
+///
+/// `examples/own_boundary.rs` shows how to write one.
 ///
 /// The generic type names are: `D` the dimension.
 pub trait Boundary<const D: usize> {

@@ -34,6 +34,8 @@ pub struct Spins<'a, S> {
 
 /// What a collision does.
 ///
+/// `examples/own_collision_rule.rs` shows how to write one.
+///
 /// The generic type names are: `D` the dimension.
 pub trait CollisionRule<const D: usize> {
     /// What else a grain carries besides its velocity, such as the angular

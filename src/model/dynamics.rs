@@ -141,6 +141,8 @@ pub enum GravityCourse {
 
 /// How grains fly: the equation of motion between collisions.
 ///
+/// `examples/own_dynamics.rs` shows how to write one.
+///
 /// The generic type names are: `D` the dimension.
 pub trait Dynamics<const D: usize> {
     /// The motion of one grain up to its next event.

@@ -127,6 +127,9 @@ fn wait<const D: usize>(apart: &Vector<D>, distance: f64, closing: f64) -> f64 {
 /// gives, and the trajectory must not depend on that. Contacts after the
 /// horizon may be reported or not.
 ///
+/// `examples/own_predictor.rs` shows how to write one; one for other flights is in
+/// `examples/own_dynamics.rs`.
+///
 /// The generic type names are: `D` the dimension, `F` the flight.
 #[diagnostic::on_unimplemented(
     message = "`{Self}` cannot predict contacts along `{F}` in {D} dimensions",
