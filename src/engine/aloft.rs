@@ -212,7 +212,7 @@ impl<const D: usize> World<D> {
     }
 
     pub(super) fn save_aloft(&self) -> Option<SavedAloft<D>> {
-        (!self.aloft.is_empty()).then(|| SavedAloft {
+        (!self.aloft.is_empty()).then_some(SavedAloft {
             velocity: self.aloft.velocity,
             among: self.aloft.among,
             since: self.aloft.since,
