@@ -169,7 +169,7 @@ fn work_of_a_deposition() {
     sleep 7650
     wall 0
     elastic 215000
-    transfer 6620
+    transfer 1690
     guard 536
     ");
 }
