@@ -271,6 +271,10 @@ fn for_each_image<B: Boundary<D>, const D: usize>(
         if let Some(period) = boundary.period(axis) {
             low[axis] = libm::ceil((-reach - apart[axis]) / period.length) as i32;
             high[axis] = libm::floor((reach - apart[axis]) / period.length) as i32;
+            // Nobody asks for images farther than a period away.
+            let nearest = libm::rint(-apart[axis] / period.length) as i32;
+            low[axis] = low[axis].max(nearest.saturating_sub(2));
+            high[axis] = high[axis].min(nearest.saturating_add(2));
         } else if apart[axis].abs() > reach {
             return;
         }
