@@ -2,8 +2,8 @@
 //!
 //! The grains of a rain fall side by side, uniformly and equally fast, so they never
 //! meet each other; nor anybody else before they come down to where others are. Up to
-//! there they are *aloft*: without a neighbour list, off the grid, and one entry in
-//! the queue, that of the lowest, stands for all of them.
+//! there they are *aloft*: without a neighbour list, in the grid still where they
+//! started, and one entry in the queue, that of the lowest, stands for all of them.
 //!
 //! What holds: every grain that is not aloft, and not falling with them, stays below
 //! the *ceiling* until its list is made again, and those aloft stay more than a
