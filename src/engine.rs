@@ -19,6 +19,7 @@ mod events;
 mod foresight;
 mod glances;
 mod guards;
+mod images;
 mod leaning;
 mod ledger;
 mod missed;

@@ -20,6 +20,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::engine::body::{Body, World};
 use crate::engine::cells::Found;
+use crate::engine::images::for_each_turns;
 use crate::engine::simulation::Simulation;
 use crate::model::{Boundary, Dynamics, Flight, Model, Predictor};
 use crate::particle::{Mode, Vector};
@@ -264,7 +265,7 @@ fn for_each_image<B: Boundary<D>, const D: usize>(
     boundary: &B,
     apart: &Vector<D>,
     reach: f64,
-    mut visit: impl FnMut([i32; D]),
+    visit: impl FnMut([i32; D]),
 ) {
     let (mut low, mut high) = ([0; D], [0; D]);
     for axis in 0..D {
@@ -278,23 +279,8 @@ fn for_each_image<B: Boundary<D>, const D: usize>(
         } else if apart[axis].abs() > reach {
             return;
         }
-        if low[axis] > high[axis] {
-            return;
-        }
     }
-    let mut turns = low;
-    loop {
-        visit(turns);
-        let mut axis = 0;
-        while axis < D && turns[axis] == high[axis] {
-            turns[axis] = low[axis];
-            axis += 1;
-        }
-        if axis == D {
-            return;
-        }
-        turns[axis] += 1;
-    }
+    for_each_turns(low, high, visit);
 }
 
 impl<M: Model<D>, const D: usize> Simulation<M, D> {

@@ -2,6 +2,7 @@
 
 use std::fmt;
 
+use crate::engine::images::for_each_turns;
 use crate::engine::simulation::Simulation;
 use crate::model::{Boundary, Flight, Model};
 use crate::particle::{ParticleId, Vector, WallId};
@@ -161,12 +162,8 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
                 low[axis] = low[axis].max(nearest - 2);
                 high[axis] = high[axis].min(nearest + 2);
             }
-            if low[axis] > high[axis] {
-                return;
-            }
         }
-        let mut turns = low;
-        loop {
+        for_each_turns(low, high, |turns| {
             let mut squared = 0.0;
             for axis in 0..D {
                 let mut along = apart[axis];
@@ -178,16 +175,7 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
             if squared < reach * reach {
                 self.audit_image(one, other, turns, squared, [this, that], audit);
             }
-            let mut axis = 0;
-            while axis < D && turns[axis] == high[axis] {
-                turns[axis] = low[axis];
-                axis += 1;
-            }
-            if axis == D {
-                return;
-            }
-            turns[axis] += 1;
-        }
+        });
     }
 
     fn audit_image(

@@ -1,6 +1,7 @@
 //! Whether the lists' book-keeping holds.
 
 use crate::engine::cells::Link;
+use crate::engine::images::for_each_turns;
 use crate::engine::neighbours::Neighbours;
 use crate::particle::Vector;
 
@@ -91,28 +92,15 @@ impl<const D: usize> Neighbours<D> {
             } else if apart[axis].abs() >= reach {
                 return;
             }
-            if low[axis] > high[axis] {
-                return;
-            }
         }
-        let mut turns = low;
-        loop {
+        for_each_turns(low, high, |turns| {
             let image: Vector<D> = Vector::from_fn(|axis, _| {
                 apart[axis] + f64::from(turns[axis]) * self.periods[axis]
             });
             if image.norm_squared() < reach * reach {
                 visit(turns);
             }
-            let mut axis = 0;
-            while axis < D && turns[axis] == high[axis] {
-                turns[axis] = low[axis];
-                axis += 1;
-            }
-            if axis == D {
-                return;
-            }
-            turns[axis] += 1;
-        }
+        });
     }
 }
 
