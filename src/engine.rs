@@ -33,6 +33,7 @@ mod settings;
 mod setup;
 mod simulation;
 mod slot;
+mod speeds;
 mod transitions;
 mod view;
 mod walls;

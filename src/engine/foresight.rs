@@ -11,8 +11,8 @@ use crate::model::{Boundary, Flight, Model};
 use crate::particle::WallId;
 use crate::time::Time;
 
-/// How long a bound on all speeds is kept before it is found anew, in √(d/g).
-const SPEED_WINDOW: f64 = 0.25;
+/// Beyond this, in √(d/g), so much comes near that telling who does spares nothing.
+const SOON: f64 = 0.25;
 
 /// Leaves room for rounding.
 const ROUND: f64 = 1.0 - 1.0e-9;
@@ -110,50 +110,18 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
             .for_each_within(&self.model, particle, distance, |other| found.push(other));
     }
 
-    /// Keeps the bound on all speeds true after a grain's velocity has changed.
-    pub(super) fn note_speed(&mut self, particle: u32) {
-        let speed = self
-            .world
-            .flight(&self.model, particle)
-            .speed_bound(SPEED_WINDOW);
-        self.speed_ceiling = self.speed_ceiling.max(speed);
-    }
-
     /// How much nearer, in d, any grain can come to `particle` within a time.
     fn nearing(&mut self, particle: u32, within: f64) -> f64 {
-        let now = self.world.clock;
-        if within > SPEED_WINDOW || now + within > self.ceiling_until {
-            let ahead = within.max(SPEED_WINDOW);
-            self.speed_ceiling = self.fastest(ahead);
-            self.ceiling_until = if within > SPEED_WINDOW {
-                // Too high for everyday use: find it anew next time.
-                now
-            } else {
-                now + ahead
-            };
-        }
         let own = self.world.flight(&self.model, particle).speed_bound(within);
-        (own + self.speed_ceiling) * within
+        (own + self.speed_ceiling(within)) * within
     }
 
     /// The same where it costs little: infinity for longer times.
     fn nearing_soon(&mut self, particle: u32, within: f64) -> f64 {
-        if within > SPEED_WINDOW {
+        if within > SOON {
             f64::INFINITY
         } else {
             self.nearing(particle, within)
         }
-    }
-
-    /// A bound on the speeds of all grains from now on for a while.
-    fn fastest(&self, within: f64) -> f64 {
-        let now = self.world.clock;
-        (0..self.world.bodies.len() as u32)
-            .map(|particle| {
-                let since = self.world.bodies[particle as usize].since;
-                let flight = self.world.flight(&self.model, particle);
-                flight.advanced(now - since).speed_bound(within)
-            })
-            .fold(0.0, f64::max)
     }
 }

@@ -24,6 +24,7 @@ use crate::engine::settings::{Collapse, Settings};
 use crate::engine::setup::check_parts;
 use crate::engine::simulation::{Simulation, listed_scale};
 use crate::engine::slot::{Partner, Slot};
+use crate::engine::speeds::Speeds;
 use crate::engine::transitions::{Alarm, Call};
 use crate::error::SetupError;
 use crate::model::{Boundary, Commands, Dynamics, EventOf, Flight, MemoryOf, Model, SpinOf};
@@ -58,8 +59,6 @@ pub struct Saved<R, E, S, const D: usize> {
     ledger: Ledger,
     counts: Counts,
     deepest: f64,
-    speed_ceiling: f64,
-    ceiling_until: Time,
     regrid_at: Time,
     blur: f64,
     epoch: Time,
@@ -116,8 +115,6 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
             ledger: self.world.ledger.clone(),
             counts: self.counts,
             deepest: self.deepest,
-            speed_ceiling: self.speed_ceiling,
-            ceiling_until: self.ceiling_until,
             regrid_at: self.regrid_at,
             blur: self.world.blur,
             epoch: self.world.glances.epoch(),
@@ -181,8 +178,7 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
             traces: saved.traces,
             counts: saved.counts,
             deepest: saved.deepest,
-            speed_ceiling: saved.speed_ceiling,
-            ceiling_until: saved.ceiling_until,
+            speeds: Speeds::unknown(saved.clock),
             regrid_at: saved.regrid_at,
             collapse: saved.collapse,
             escaped: saved.escaped,
@@ -267,7 +263,7 @@ impl<R, E, S, const D: usize> Saved<R, E, S, D> {
             }
         }
         let is_size = |number: f64| (0.0..f64::INFINITY).contains(&number);
-        if !is_size(self.deepest) || self.speed_ceiling.is_nan() || self.largest <= 0.0 {
+        if !is_size(self.deepest) || self.largest <= 0.0 {
             return Err(wrong("a bound that is none"));
         }
         if !is_size(self.blur) || self.epoch > self.clock {

@@ -15,6 +15,7 @@ use crate::engine::queue::EventQueue;
 use crate::engine::settings::Settings;
 use crate::engine::simulation::Simulation;
 use crate::engine::slot::{Partner, Slot};
+use crate::engine::speeds::Speeds;
 use crate::engine::walls::{check_distance, check_walls};
 use crate::error::SetupError;
 use crate::model::{
@@ -104,8 +105,7 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
             traces: Traces::new(&settings.guards),
             counts: Counts::default(),
             deepest: 0.0,
-            speed_ceiling: 0.0,
-            ceiling_until: settings.start,
+            speeds: Speeds::unknown(settings.start),
             regrid_at: Time::NEVER,
             collapse: None,
             escaped: None,

@@ -13,6 +13,7 @@ use crate::engine::neighbours::Neighbours;
 use crate::engine::queue::EventQueue;
 use crate::engine::settings::{Collapse, Settings};
 use crate::engine::slot::Slot;
+use crate::engine::speeds::Speeds;
 use crate::engine::transitions::Alarm;
 use crate::model::{Boundary, Commands, Dynamics, EventOf, Flight, MemoryOf, Model, SpinOf};
 use crate::particle::{Mode, Particle, ParticleId};
@@ -38,9 +39,7 @@ pub struct Simulation<M: Model<D>, const D: usize> {
     pub(super) epoch_events: u64,
     /// Deepest overlap found at any event, in d.
     pub(super) deepest: f64,
-    /// A bound on all speeds, good until an instant.
-    pub(super) speed_ceiling: f64,
-    pub(super) ceiling_until: Time,
+    pub(super) speeds: Speeds,
     /// When growing diameters will have outgrown the grid.
     pub(super) regrid_at: Time,
     pub(super) collapse: Option<Collapse>,

@@ -119,7 +119,7 @@ fn row_of(policy: &str, folder: &std::path::Path, program: &Program) -> Result<R
         options: Options::default(),
     };
     let runner = program.runner(&job.scenario);
-    let census = runner.census(&job, summary.events.total)?;
+    let census = runner.census(&job, summary.events.sleep)?;
     Ok(Row {
         policy: policy.to_owned(),
         summary,

@@ -172,7 +172,7 @@ pub(super) trait Runner: Send + Sync {
 
     /// Goes through a run again that had so many events, and counts what was
     /// false.
-    fn census(&self, job: &Job, events: u64) -> Result<Census, ProgramError>;
+    fn census(&self, job: &Job, sleeps: u64) -> Result<Census, ProgramError>;
 }
 
 /// Where a policy comes from.
@@ -270,15 +270,15 @@ impl<C: Choice> Runner for C {
         }
     }
 
-    fn census(&self, job: &Job, events: u64) -> Result<Census, ProgramError> {
+    fn census(&self, job: &Job, sleeps: u64) -> Result<Census, ProgramError> {
         match job.scenario.dimension {
             Dimension::Two => {
                 let start = Start::<2>::new(&job.origin, &job.scenario)?;
-                with_model(self, job, TakeCensus { job, start, events })?
+                with_model(self, job, TakeCensus { job, start, sleeps })?
             }
             Dimension::Three => {
                 let start = Start::<3>::new(&job.origin, &job.scenario)?;
-                with_model(self, job, TakeCensus { job, start, events })?
+                with_model(self, job, TakeCensus { job, start, sleeps })?
             }
         }
     }

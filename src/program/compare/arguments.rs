@@ -13,10 +13,10 @@ Examples:
 Every criterion runs the scenario with every seed, on all cores, each run as
 `grainfall run` would carry it out, in a folder of its own. Then each run is gone
 through again, in memory, and questioned:
-  false sleeps   at 20 instants, spread over the events of the run, the next grain
-                 that falls asleep goes on instead, with the velocity it lost, while
-                 nobody else falls asleep or wakes; false if it moves farther than
-                 0.05 d within 2 √(d/g)
+  false sleeps   at 20 sleeps, spread evenly over all of the run, the grain that falls
+                 asleep goes on instead, with the velocity it lost, while nobody else
+                 falls asleep or wakes; false if it moves farther than 0.05 d within
+                 2 √(d/g)
   false wakes    of all grains that woke, those that fell asleep again within 0.05 d
                  of where they woke
 

@@ -11,8 +11,8 @@ use crate::program::error::ProgramError;
 use crate::scenario::{Gravity, Scenario, Start};
 use crate::time::Time;
 
-/// At so many instants of a run a sleep is questioned.
-const INSTANTS: u64 = 20;
+/// So many sleeps of a run are questioned, evenly spread over all.
+const QUESTIONS: u64 = 20;
 /// One that moves farther than this, in d, was not at rest, …
 const MOVED: f64 = 0.05;
 /// … within this time, in √(d/g).
@@ -36,11 +36,11 @@ pub(in crate::program) struct Census {
     pub(in crate::program) false_wakes: u64,
 }
 
-/// Takes the census of a run that had so many events.
+/// Takes the census of a run in which grains fell asleep so many times.
 pub(in crate::program) struct TakeCensus<'a, const D: usize> {
     pub(in crate::program) job: &'a Job,
     pub(in crate::program) start: Start<D>,
-    pub(in crate::program) events: u64,
+    pub(in crate::program) sleeps: u64,
 }
 
 impl<const D: usize> Task<D> for TakeCensus<'_, D> {
@@ -50,31 +50,32 @@ impl<const D: usize> Task<D> for TakeCensus<'_, D> {
         let boundary = self.start.boundary.clone();
         let mut replay = Replay::new(self.job, self.start, model)?;
         let mut census = Census::default();
-        for instant in 0..INSTANTS {
-            let share = (2 * instant + 1) as f64 / (2 * INSTANTS) as f64;
-            let at = (share * self.events as f64) as u64;
-            if !(replay.advance(Time::NEVER, at) && fall_asleep(&mut replay)) {
+        let questions = QUESTIONS.min(self.sleeps);
+        for question in 0..questions {
+            // In the middle of each of so many equal parts.
+            let which = (2 * question + 1) * self.sleeps / (2 * questions);
+            if !on_to_sleep(&mut replay, which + 1) {
                 break;
             }
-            if let Some(was_false) = question(&self.job.scenario, &boundary, &replay)? {
+            if let Some(was_false) = ask(&self.job.scenario, &boundary, &replay)? {
                 census.sleeps += 1;
                 census.false_sleeps += u64::from(was_false);
             }
         }
-        replay.advance(Time::NEVER, self.events);
+        replay.advance(Time::NEVER, u64::MAX);
         let diary = replay.diary();
         (census.wakes, census.false_wakes) = (diary.wakes, diary.false_wakes);
         Ok(census)
     }
 }
 
-/// On, event by event, until the next grain has fallen asleep; false if none does.
-fn fall_asleep<M: Model<D>, const D: usize>(replay: &mut Replay<M, D>) -> bool {
-    let before = replay.simulation.counts().sleep;
-    while replay.simulation.counts().sleep == before {
+/// On, event by event, until grains have fallen asleep so many times; false if they
+/// never do.
+fn on_to_sleep<M: Model<D>, const D: usize>(replay: &mut Replay<M, D>, sleeps: u64) -> bool {
+    while replay.simulation.counts().sleep < sleeps {
         let next = replay.simulation.counts().total() + 1;
         if !replay.advance(Time::NEVER, next) {
-            return replay.simulation.counts().sleep > before;
+            return replay.simulation.counts().sleep >= sleeps;
         }
     }
     true
@@ -82,7 +83,7 @@ fn fall_asleep<M: Model<D>, const D: usize>(replay: &mut Replay<M, D>) -> bool {
 
 /// Whether the grain that has just fallen asleep would have gone away; `None` if
 /// that can't be found out.
-fn question<M: Model<D>, const D: usize>(
+fn ask<M: Model<D>, const D: usize>(
     scenario: &Scenario,
     boundary: &Cuboid<D>,
     replay: &Replay<M, D>,
@@ -133,7 +134,7 @@ impl<const D: usize> Task<D> for WatchIt<'_, D> {
             if moved.norm_squared() > MOVED * MOVED {
                 return Some(true);
             }
-            if replay.simulation.counts().total() >= MOST_EVENTS {
+            if replay.simulation.counts().total() >= MOST_EVENTS || replay.broke_off() {
                 return None;
             }
             if now >= PATIENCE || !more {

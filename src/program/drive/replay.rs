@@ -83,6 +83,7 @@ pub(in crate::program) struct Replay<M: Model<D>, const D: usize> {
     all_frozen: bool,
     end: Time,
     events: u64,
+    broke_off: bool,
 }
 
 impl<M: Model<D>, const D: usize> Replay<M, D> {
@@ -148,6 +149,7 @@ impl<M: Model<D>, const D: usize> Replay<M, D> {
             all_frozen: scenario.stop.all_frozen.unwrap_or(true),
             end: end_of(scenario),
             events: scenario.stop.events.unwrap_or(u64::MAX),
+            broke_off: false,
         }
     }
 
@@ -164,6 +166,11 @@ impl<M: Model<D>, const D: usize> Replay<M, D> {
 
     pub(in crate::program) fn diary(&self) -> Diary {
         self.watch.diary.clone().unwrap_or_default()
+    }
+
+    /// Whether it can't go on: a collapse, or a grain that has left for good.
+    pub(in crate::program) fn broke_off(&self) -> bool {
+        self.broke_off
     }
 
     /// On to a time, or until so many events have happened in all; false if the
@@ -189,7 +196,11 @@ impl<M: Model<D>, const D: usize> Replay<M, D> {
                         _ => return false,
                     }
                 }
-                _ => return false,
+                StopReason::Collapse(_) | StopReason::Escaped(_) => {
+                    self.broke_off = true;
+                    return false;
+                }
+                StopReason::NothingLeft => return false,
             }
         }
     }
