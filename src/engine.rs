@@ -3,6 +3,7 @@
 //! It knows a model by [`Model`](crate::model::Model) alone and no
 //! implementation of its parts.
 
+mod ahead;
 mod aloft;
 mod answers;
 #[cfg(test)]

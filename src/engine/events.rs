@@ -33,6 +33,7 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
                 return StopReason::Events;
             }
             let next = self.next_event();
+            self.fetch_ahead();
             let due = next.as_ref().map_or(Time::NEVER, |(key, _)| key.time);
             if self.regrid_at < due && self.regrid_at <= limits.time {
                 self.world.clock = self.regrid_at;

@@ -8,6 +8,8 @@
 //! A glance follows from the grain's state, the epoch and the place it is filed
 //! under: a simulation that is restored has the same.
 
+use std::hint::black_box;
+
 use wide::f64x4;
 
 use crate::engine::body::{LONG_AGO, World, flight_of, rounding};
@@ -89,6 +91,12 @@ impl<const D: usize> Glances<D> {
     #[inline]
     fn offset(&self, time: Time) -> f64 {
         (time - self.epoch) * (1.0 + 4.0 * f64::EPSILON)
+    }
+
+    /// Reads how a grain is seen, to have it at hand.
+    #[inline]
+    pub(super) fn touch(&self, particle: u32) {
+        black_box(self.all[particle as usize].radius);
     }
 
     /// Whether nothing can be said of a grain.

@@ -1,6 +1,8 @@
 //! Book-keeping of cascades: how often a grain has collided at one instant, and
 //! with whom last.
 
+use std::hint::black_box;
+
 use std::ops::{Index, IndexMut};
 
 use serde::{Deserialize, Serialize};
@@ -96,6 +98,12 @@ impl Traces {
         if self.hold > 0.0 {
             self.holds.push(Holds::NONE);
         }
+    }
+
+    /// Reads a grain's trace, to have it at hand.
+    #[inline]
+    pub(super) fn touch(&self, particle: u32) {
+        black_box(self.traces[particle as usize].run);
     }
 
     pub(super) fn forget_last(&mut self) {

@@ -15,6 +15,8 @@ mod bed;
 mod check;
 mod saved;
 
+use std::hint::black_box;
+
 use bed::Bed;
 pub(super) use saved::SavedNeighbours;
 
@@ -118,6 +120,27 @@ impl<const D: usize> Neighbours<D> {
     /// Largest contact distance this was made for, in d.
     pub(super) fn largest(&self) -> f64 {
         self.largest
+    }
+
+    /// Reads where a grain is filed and how it is tied, to have that at hand.
+    #[inline]
+    pub(super) fn touch(&self, particle: u32) {
+        black_box(self.ties[particle as usize].leash);
+        black_box(self.cells.spot(particle).reach);
+        black_box(self.cells.turns(particle)[0]);
+    }
+
+    /// The same for its list.
+    #[inline]
+    pub(super) fn touch_list(&self, particle: u32) {
+        let tie = &self.ties[particle as usize];
+        // A cache line holds eight.
+        for few in tie.list.chunks(8) {
+            black_box(few[0]);
+        }
+        if let Some(bed) = &tie.bed {
+            black_box(bed.resting.len());
+        }
     }
 
     /// The list of a grain; empty if it is at rest.

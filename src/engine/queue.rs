@@ -7,6 +7,8 @@
 
 mod check;
 
+use std::hint::black_box;
+
 use serde::{Deserialize, Serialize};
 
 use crate::time::Time;
@@ -92,6 +94,29 @@ impl EventQueue {
         self.places.push(NOWHERE);
         self.next.push(NOWHERE);
         self.previous.push(NOWHERE);
+    }
+
+    /// The slot of the calendar that is being served.
+    #[inline]
+    pub(super) fn page(&self) -> i64 {
+        self.current
+    }
+
+    /// Whose entries are filed in a slot that is still to come.
+    #[inline]
+    pub(super) fn filed_in(&self, slot: i64) -> impl Iterator<Item = u32> {
+        let ahead = slot > self.current && slot - self.current < self.slots();
+        let list = (slot & (self.slots() - 1)) as usize + 1;
+        let known = |particle: u32| (particle != NOWHERE).then_some(particle);
+        let first = if ahead { known(self.heads[list]) } else { None };
+        std::iter::successors(first, move |particle| known(self.next[*particle as usize]))
+    }
+
+    /// Reads an entry, to have it at hand.
+    #[inline]
+    pub(super) fn touch(&self, particle: u32) {
+        black_box(self.keys[particle as usize].low);
+        black_box(self.places[particle as usize]);
     }
 
     /// Takes back the last grain that room was made for.

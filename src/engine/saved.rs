@@ -179,6 +179,7 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
             counts: saved.counts,
             deepest: saved.deepest,
             speeds: Speeds::unknown(saved.clock),
+            fetched: 0,
             regrid_at: saved.regrid_at,
             collapse: saved.collapse,
             escaped: saved.escaped,

@@ -106,6 +106,7 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
             counts: Counts::default(),
             deepest: 0.0,
             speeds: Speeds::unknown(settings.start),
+            fetched: 0,
             regrid_at: Time::NEVER,
             collapse: None,
             escaped: None,

@@ -40,6 +40,8 @@ pub struct Simulation<M: Model<D>, const D: usize> {
     /// Deepest overlap found at any event, in d.
     pub(super) deepest: f64,
     pub(super) speeds: Speeds,
+    /// The slot of the calendar up to which data have been fetched ahead.
+    pub(super) fetched: i64,
     /// When growing diameters will have outgrown the grid.
     pub(super) regrid_at: Time,
     pub(super) collapse: Option<Collapse>,

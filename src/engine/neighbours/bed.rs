@@ -4,6 +4,8 @@
 //! sleep. Their places from its anchor are kept side by side, so that nothing
 //! has to be fetched from afar.
 
+use std::hint::black_box;
+
 use crate::engine::body::Body;
 use crate::engine::cells::{Cells, Link};
 use crate::engine::neighbours::{Neighbours, Tie};
@@ -61,6 +63,19 @@ impl<const D: usize> Bed<D> {
             }
         }
         bed
+    }
+}
+
+impl<const D: usize> Bed<D> {
+    /// Reads it, to have it at hand.
+    #[inline]
+    pub(in crate::engine) fn touch(&self) {
+        for few in &self.resting {
+            black_box(few.distances[0]);
+        }
+        for link in self.still.chunks(8) {
+            black_box(link[0]);
+        }
     }
 }
 
