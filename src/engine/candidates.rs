@@ -197,7 +197,7 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
         let place = own.start() - near.anchor(particle);
         let (bed, movers) = near.bed(particle);
         let slots = &self.slots;
-        let mut add = |answers: [f64; LANES], few: &[Link<D>]| {
+        let mut add = |answers: [f64; LANES], few: &[Link<D>], at_rest: bool| {
             for (mut bound, link) in answers.into_iter().zip(few) {
                 if let Some((left, time)) = back
                     && left == *link
@@ -208,8 +208,9 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
                 if bound == f64::INFINITY || bound > horizon {
                     continue;
                 }
-                // Later than its own bound, the other finds it anyway.
-                if bound > slots[link.particle() as usize].bound() - now {
+                // Later than its own bound, the other finds it anyway; those at rest
+                // have none.
+                if !at_rest && bound > slots[link.particle() as usize].bound() - now {
                     continue;
                 }
                 candidates.push(Candidate {
@@ -230,7 +231,7 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
                 blur,
                 horizon,
             };
-            add(model.predictor().not_before_resting(&nook), few);
+            add(model.predictor().not_before_resting(&nook), few, true);
         }
         if self.world.onlooker(particle, now).is_some() {
             return true;
@@ -260,7 +261,7 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
                     }
                 }
             }
-            add(answers, few);
+            add(answers, few, false);
         }
         true
     }
