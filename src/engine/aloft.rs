@@ -106,7 +106,7 @@ impl<const D: usize> Aloft<D> {
 
     /// Somebody may be aloft no more.
     #[inline]
-    pub(super) fn look_again(&mut self) {
+    pub(super) fn doubt(&mut self) {
         self.risen |= !self.is_empty();
     }
 

@@ -220,7 +220,7 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
             self.world.glance(&self.model, particle);
         }
         if loose {
-            self.world.aloft.look_again();
+            self.world.aloft.doubt();
         }
         self.world.stay_below(particle);
     }

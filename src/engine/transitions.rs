@@ -117,7 +117,7 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
             let radius = self.listed_scale() * body.radius;
             self.world.near.release(particle, &position, radius);
             self.world.glance(&self.model, particle);
-            self.world.aloft.look_again();
+            self.world.aloft.doubt();
             self.world.stay_below(particle);
         }
     }

@@ -252,19 +252,9 @@ impl<const D: usize, C: RestCondition<D>> StatePolicy<D> for AtRest<C> {
         memory: &mut Self::Memory,
         _commands: &mut Commands<CheckDue>,
     ) -> Response<D> {
-        let Some(check) = &self.self_check else {
-            return Response::Ignore;
-        };
-        let grain = near.particle(id);
-        if grain.mode != Mode::Frozen {
-            return Response::Ignore;
-        }
-        let walls = self.wall_supports;
-        match memory.supports.verify(check, walls, id, near) {
-            Ok(()) => Response::Keep,
-            Err(reason) => {
-                Response::Wake(self.given_back(memory, near.time(), grain.velocity), reason)
-            }
-        }
+        let (check, walls) = (self.self_check.as_ref(), self.wall_supports);
+        memory.supports.answer(check, walls, id, near, |grain| {
+            self.given_back(memory, near.time(), grain.velocity)
+        })
     }
 }

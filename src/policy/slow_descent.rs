@@ -372,22 +372,10 @@ impl<const D: usize> StatePolicy<D> for SlowDescent {
         memory: &mut Remembered<D>,
         _commands: &mut Commands<CheckDue>,
     ) -> Response<D> {
-        let Some(check) = &self.self_check else {
-            return Response::Ignore;
-        };
-        let grain = near.particle(id);
-        if grain.mode != Mode::Frozen {
-            return Response::Ignore;
-        }
-        let walls = self.wall_supports;
-        match memory.supports.verify(check, walls, id, near) {
-            Ok(()) => Response::Keep,
-            Err(reason) => {
-                let gravity = near.gravity();
-                let ground = grain.velocity;
-                let waking = self.given_back(memory, near.time(), &gravity, ground, grain.mass);
-                Response::Wake(waking, reason)
-            }
-        }
+        let (check, walls) = (self.self_check.as_ref(), self.wall_supports);
+        memory.supports.answer(check, walls, id, near, |grain| {
+            let (now, gravity) = (near.time(), near.gravity());
+            self.given_back(memory, now, &gravity, grain.velocity, grain.mass)
+        })
     }
 }

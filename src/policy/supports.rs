@@ -10,8 +10,8 @@ use serde::{Deserialize, Serialize};
 use crate::error::SetupError;
 #[cfg(doc)]
 use crate::model::GravityCourse;
-use crate::model::{Commands, Reason, Surroundings};
-use crate::particle::{Mode, ParticleId, Vector};
+use crate::model::{Commands, Reason, Response, Surroundings, Waking};
+use crate::particle::{Mode, Particle, ParticleId, Vector};
 use crate::time::Time;
 
 /// A wall within this gap below a grain supports it, in d.
@@ -291,8 +291,30 @@ impl Supports {
         Ok(())
     }
 
+    /// What a grain does that hears of a change of its supports: if it sleeps and one
+    /// of them is gone, it wakes, as `waking` says for how it is now.
+    pub(super) fn answer<const D: usize, S: Surroundings<D>>(
+        &self,
+        check: Option<&SelfCheck>,
+        walls_count: bool,
+        id: ParticleId,
+        near: &S,
+        waking: impl FnOnce(&Particle<D>) -> Waking<D>,
+    ) -> Response<D> {
+        let grain = near.particle(id);
+        match check {
+            Some(check) if grain.mode == Mode::Frozen => {
+                match self.verify(check, walls_count, id, near) {
+                    Ok(()) => Response::Keep,
+                    Err(reason) => Response::Wake(waking(&grain), reason),
+                }
+            }
+            _ => Response::Ignore,
+        }
+    }
+
     /// Whether all of them still hold the grain up.
-    pub(super) fn verify<const D: usize, S: Surroundings<D>>(
+    fn verify<const D: usize, S: Surroundings<D>>(
         &self,
         check: &SelfCheck,
         walls_count: bool,
