@@ -14,6 +14,7 @@ mod error;
 mod estimate;
 mod load;
 mod means;
+mod parts;
 mod processor;
 mod progress;
 mod reference;
@@ -29,6 +30,7 @@ mod why;
 
 pub use criteria::Program;
 pub use error::ProgramError;
+pub use parts::{Refit, RefittedProgram};
 pub use sweep::SweepError;
 
 use std::io::{self, Write};

@@ -26,6 +26,7 @@
 mod build;
 mod criteria;
 mod error;
+mod parts;
 mod path;
 mod place;
 mod presets;
@@ -39,13 +40,14 @@ mod validate;
 pub use build::{Drumming, FloatingModel, GravityModel, Start, TurningModel};
 pub use criteria::{KnownCriterion, built_in_criteria};
 pub use error::{Problem, Refusal, ScenarioError};
+pub use parts::KnownParts;
 pub use path::{Path, Segment};
 pub use place::{Line, Place};
 pub use presets::{Preset, presets};
 pub use read::{Format, Origin, read, read_text};
 pub use schema::{
     Base, Criteria, Dimension, DimensionError, Drum, Gas, Gravity, Guards, Numbering, OneByOne,
-    Output, Parameters, Phase, Rain, Rotation, Scenario, SelfCheck, Side, Sleep, Source,
+    Output, OwnParts, Parameters, Phase, Rain, Rotation, Scenario, SelfCheck, Side, Sleep, Source,
     SourceKind, Stop, Threshold, Turns,
 };
 pub use set::Assignment;

@@ -225,3 +225,47 @@ fn a_cage_that_is_carried_along_catches_as_one_at_rest_does() {
     assert!(at_rest < 100);
     assert_eq!(at_rest, carried);
 }
+
+/// A grain that leans on 1 and 2, between which it could slide down if it did not
+/// wedge itself against 3 by 10⁻³ of a degree; as found in a deposit of 10⁶. To hold it
+/// these would have to press with 10⁴ times its weight.
+#[test]
+fn a_grain_in_a_narrow_wedge_is_caught() {
+    let grains = vec![
+        Particle::new(
+            Vector::<3>::zeros(),
+            Vector::<3>::new(
+                -0.0005884462141699399,
+                -6.15865897897847e-5,
+                0.0008073344332827398,
+            ),
+        ),
+        Particle::fixed(Vector::<3>::new(
+            -0.31358747310817137,
+            0.9364672365993485,
+            -0.1571369195583152,
+        )),
+        Particle::fixed(Vector::<3>::new(
+            -0.46612258807391527,
+            -0.7891559764207017,
+            -0.3999532194707509,
+        )),
+        Particle::fixed(Vector::<3>::new(
+            0.6145638083374791,
+            -0.6823413797729643,
+            0.3958807483783211,
+        )),
+    ];
+    let model = heavy(rule(1.0e-3), SlowDescent::default(), [Side::Open; 3]);
+    let guards = Guards {
+        exit_speed: 1.0e-4,
+        ..Guards::default()
+    };
+    let mut simulation = Simulation::with_settings(model, grains, with(guards)).unwrap();
+    let limits = Limits {
+        all_frozen: true,
+        ..Limits::events(200_000)
+    };
+    assert_eq!(simulation.run(&limits, &mut ()), StopReason::AllFrozen);
+    assert!(simulation.max_overlap() < 1.0e-11);
+}

@@ -205,7 +205,9 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
         let held = |fall: Vec<Vector<D>>| {
             fall[0].norm_squared().sqrt() < HELD * gravity.norm_squared().sqrt()
         };
-        hurried && project(&[gravity], &bars, 0.0).is_some_and(held)
+        // It is not found in a wedge so narrow that its sides, to hold the grain, press
+        // with thousands of times its weight.
+        hurried && project(&[gravity], &bars, 0.0).is_none_or(held)
     }
 
     fn name_collapse(&self, particle: u32, run: u32) -> Collapse {

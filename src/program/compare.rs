@@ -104,7 +104,7 @@ fn row_of(policy: &str, folder: &std::path::Path, program: &Program) -> Result<R
     let folder = RunFolder::open(folder)?;
     let file = folder.file("scenario.toml");
     let mut origin = Origin::open(&file)?;
-    origin.criteria = program.criteria();
+    program.acquaint(&mut origin);
     let scenario = read_text(&origin).map_err(ScenarioError::from)?;
     let text = fs::read(&file).map_err(ProgramError::io(file.display().to_string()))?;
     let ended = folder.file("summary.json");

@@ -10,15 +10,19 @@ use serde::Serialize;
 use serde::de::DeserializeOwned;
 
 use crate::boundary::Cuboid;
+use crate::engine::Simulation;
 use crate::model::{Model, StatePolicy};
+use crate::output::Frame;
 use crate::policy::Criterion;
 use crate::program::compare::{Census, TakeCensus};
 use crate::program::drive::{self, Attempt, Job};
 use crate::program::error::ProgramError;
+use crate::program::parts::{AsTheyAre, Refit};
 use crate::program::signals::Signals;
 use crate::program::why::{Ask, Question, Report};
 use crate::scenario::{
-    Dimension, Gravity, KnownCriterion, Origin, Problem, Scenario, Start, built_in_criteria,
+    Dimension, Gravity, KnownCriterion, KnownParts, Origin, Problem, Scenario, Start,
+    built_in_criteria,
 };
 
 /// The command-line program, with the sleep criteria that it knows: the built-in
@@ -74,15 +78,22 @@ use crate::scenario::{
 ///     Program::new().with_criterion::<Slow>("slow", "arrives slowly").main()
 /// }
 /// ```
-#[derive(Default)]
 pub struct Program {
     own: Vec<Own>,
+    built_in: Box<dyn Runner>,
+    parts: Option<KnownParts>,
 }
 
 /// A criterion that was added.
-struct Own {
-    known: KnownCriterion,
-    runner: Box<dyn Runner>,
+pub(super) struct Own {
+    pub(super) known: KnownCriterion,
+    pub(super) runner: Box<dyn Runner>,
+}
+
+impl Default for Program {
+    fn default() -> Self {
+        Program::new()
+    }
 }
 
 impl fmt::Debug for Program {
@@ -97,7 +108,20 @@ impl Program {
     /// With the built-in criteria.
     #[must_use]
     pub fn new() -> Self {
-        Program::default()
+        Program::of(Box::new(BuiltIn::<AsTheyAre>::default()), None)
+    }
+
+    /// With what runs the built-in criteria, and parts of one's own.
+    pub(super) fn of(built_in: Box<dyn Runner>, parts: Option<KnownParts>) -> Self {
+        Program {
+            own: Vec::new(),
+            built_in,
+            parts,
+        }
+    }
+
+    pub(super) fn add(&mut self, own: Own) {
+        self.own.push(own);
     }
 
     /// Adds a policy that scenarios may name, with what it is in a line. Its
@@ -108,9 +132,9 @@ impl Program {
     where
         P: StatePolicy<2> + StatePolicy<3> + Serialize + DeserializeOwned + 'static,
     {
-        self.own.push(Own {
+        self.add(Own {
             known: KnownCriterion::of_policy::<P>(name, summary),
-            runner: Box::new(Added(PhantomData::<fn() -> P>)),
+            runner: Box::new(Added::<P, AsTheyAre>::default()),
         });
         self
     }
@@ -135,9 +159,23 @@ impl Program {
         match self.own.iter().find(named) {
             // Without gravity nobody sleeps, whoever is named.
             Some(own) if scenario.gravity != Gravity::None => own.runner.as_ref(),
-            _ => &BuiltIn,
+            _ => self.built_in.as_ref(),
         }
     }
+
+    /// Has a scenario that is going to be read name what this program knows.
+    pub(super) fn acquaint(&self, origin: &mut Origin) {
+        origin.criteria = self.criteria();
+        origin.parts = self.parts;
+    }
+}
+
+/// The grains of a scenario that are written out or stand in files.
+pub(super) struct Given {
+    /// How many there are.
+    pub(super) grains: usize,
+    /// The files: for each the source's number and what was in it.
+    pub(super) files: Vec<(usize, Frame)>,
 }
 
 /// Something that is done with a model which only a scenario knows.
@@ -170,14 +208,19 @@ pub(super) trait Runner: Send + Sync {
         question: Question,
     ) -> Result<Option<Report>, ProgramError>;
 
-    /// Goes through a run again that had so many events, and counts what was
-    /// false.
+    /// Goes through a run again in which grains fell asleep so many times, and
+    /// counts what was false.
     fn census(&self, job: &Job, sleeps: u64) -> Result<Census, ProgramError>;
+
+    /// Checks the grains that are written out or stand in files against each other
+    /// and the walls, and what the parts of the model say of themselves.
+    fn check(&self, origin: &Origin, scenario: &Scenario) -> Result<Given, ProgramError>;
 }
 
-/// Where a policy comes from.
+/// Where a policy, and the other parts, come from.
 trait Choice: Send + Sync {
     type Policy: StatePolicy<2> + StatePolicy<3>;
+    type Parts: Refit + DeserializeOwned;
 
     /// Whether scenarios without gravity come here, too.
     const FLOATS: bool;
@@ -185,10 +228,18 @@ trait Choice: Send + Sync {
     fn policy(&self, scenario: &Scenario) -> Option<Self::Policy>;
 }
 
-struct BuiltIn;
+/// The built-in criteria, with parts `Q`.
+pub(super) struct BuiltIn<Q>(PhantomData<fn() -> Q>);
 
-impl Choice for BuiltIn {
+impl<Q> Default for BuiltIn<Q> {
+    fn default() -> Self {
+        BuiltIn(PhantomData)
+    }
+}
+
+impl<Q: Refit + DeserializeOwned> Choice for BuiltIn<Q> {
     type Policy = Criterion;
+    type Parts = Q;
 
     const FLOATS: bool = true;
 
@@ -197,10 +248,22 @@ impl Choice for BuiltIn {
     }
 }
 
-struct Added<P>(PhantomData<fn() -> P>);
+/// A policy `P` that was added, with parts `Q`.
+pub(super) struct Added<P, Q>(PhantomData<fn() -> (P, Q)>);
 
-impl<P: StatePolicy<2> + StatePolicy<3> + DeserializeOwned> Choice for Added<P> {
+impl<P, Q> Default for Added<P, Q> {
+    fn default() -> Self {
+        Added(PhantomData)
+    }
+}
+
+impl<P, Q> Choice for Added<P, Q>
+where
+    P: StatePolicy<2> + StatePolicy<3> + DeserializeOwned,
+    Q: Refit + DeserializeOwned,
+{
     type Policy = P;
+    type Parts = Q;
 
     const FLOATS: bool = false;
 
@@ -216,7 +279,8 @@ impl<C: Choice> Runner for C {
                 let start = Start::<2>::new(&job.origin, &job.scenario)?;
                 with_model(
                     self,
-                    job,
+                    &job.origin,
+                    &job.scenario,
                     Begin {
                         job,
                         start,
@@ -228,7 +292,8 @@ impl<C: Choice> Runner for C {
                 let start = Start::<3>::new(&job.origin, &job.scenario)?;
                 with_model(
                     self,
-                    job,
+                    &job.origin,
+                    &job.scenario,
                     Begin {
                         job,
                         start,
@@ -253,8 +318,8 @@ impl<C: Choice> Runner for C {
             beforehand,
         };
         match job.scenario.dimension {
-            Dimension::Two => with_model::<_, 2, _>(self, job, task)?,
-            Dimension::Three => with_model::<_, 3, _>(self, job, task)?,
+            Dimension::Two => with_model::<_, 2, _>(self, &job.origin, &job.scenario, task)?,
+            Dimension::Three => with_model::<_, 3, _>(self, &job.origin, &job.scenario, task)?,
         }
     }
 
@@ -272,16 +337,49 @@ impl<C: Choice> Runner for C {
 
     fn census(&self, job: &Job, sleeps: u64) -> Result<Census, ProgramError> {
         match job.scenario.dimension {
-            Dimension::Two => {
-                let start = Start::<2>::new(&job.origin, &job.scenario)?;
-                with_model(self, job, TakeCensus { job, start, sleeps })?
-            }
-            Dimension::Three => {
-                let start = Start::<3>::new(&job.origin, &job.scenario)?;
-                with_model(self, job, TakeCensus { job, start, sleeps })?
-            }
+            Dimension::Two => count::<_, 2>(self, job, sleeps),
+            Dimension::Three => count::<_, 3>(self, job, sleeps),
         }
     }
+
+    fn check(&self, origin: &Origin, scenario: &Scenario) -> Result<Given, ProgramError> {
+        match scenario.dimension {
+            Dimension::Two => check::<_, 2>(self, origin, scenario),
+            Dimension::Three => check::<_, 3>(self, origin, scenario),
+        }
+    }
+}
+
+fn count<C, const D: usize>(choice: &C, job: &Job, sleeps: u64) -> Result<Census, ProgramError>
+where
+    C: Choice,
+    C::Policy: StatePolicy<D>,
+{
+    let task = TakeCensus {
+        job,
+        start: Start::<D>::new(&job.origin, &job.scenario)?,
+        sleeps,
+        parts: parts::<C>(&job.origin, &job.scenario)?,
+    };
+    with_model(choice, &job.origin, &job.scenario, task)?
+}
+
+fn check<C, const D: usize>(
+    choice: &C,
+    origin: &Origin,
+    scenario: &Scenario,
+) -> Result<Given, ProgramError>
+where
+    C: Choice,
+    C::Policy: StatePolicy<D>,
+{
+    let start = Start::<D>::given(origin, scenario)?;
+    let task = Check {
+        origin,
+        scenario,
+        start,
+    };
+    with_model(choice, origin, scenario, task)?
 }
 
 fn ask<C, const D: usize>(
@@ -304,13 +402,14 @@ where
         start,
         question,
     };
-    with_model(choice, job, task)?
+    with_model(choice, &job.origin, &job.scenario, task)?
 }
 
 /// Does a task with the model of a scenario.
 fn with_model<C, const D: usize, T>(
     choice: &C,
-    job: &Job,
+    origin: &Origin,
+    scenario: &Scenario,
     task: T,
 ) -> Result<T::Output, ProgramError>
 where
@@ -318,30 +417,49 @@ where
     C::Policy: StatePolicy<D>,
     T: Task<D>,
 {
-    let scenario = &job.scenario;
+    let parts = parts::<C>(origin, scenario)?;
     if C::FLOATS && scenario.gravity == Gravity::None {
-        return Ok(task.run(|boundary| scenario.floating_model(boundary)));
+        return Ok(task.run(|boundary| parts.refit(scenario.floating_model(boundary))));
     }
     let policy = choice
         .policy(scenario)
-        .ok_or_else(|| misfit(&job.origin, scenario))?;
-    Ok(match &scenario.rotation {
-        Some(rotation) => task.run(|boundary| scenario.turning_model(rotation, policy, boundary)),
-        None => task.run(|boundary| scenario.gravity_model(policy, boundary)),
-    })
+        .ok_or_else(|| misfit(origin, scenario))?;
+    Ok(with_gravity(&parts, scenario, policy, task))
+}
+
+/// The same for one with gravity, and with a policy at hand.
+fn with_gravity<Q, S, const D: usize, T>(
+    parts: &Q,
+    scenario: &Scenario,
+    policy: S,
+    task: T,
+) -> T::Output
+where
+    Q: Refit,
+    S: StatePolicy<D>,
+    T: Task<D>,
+{
+    match &scenario.rotation {
+        Some(rotation) => {
+            task.run(|boundary| parts.refit(scenario.turning_model(rotation, policy, boundary)))
+        }
+        None => task.run(|boundary| parts.refit(scenario.gravity_model(policy, boundary))),
+    }
 }
 
 /// Does a task with the model of a scenario in which nobody sleeps. (It is one of
 /// those that are compiled anyway.)
-pub(super) fn continued_without_sleep<const D: usize, T: Task<D>>(
+pub(super) fn continued_without_sleep<Q: Refit, const D: usize, T: Task<D>>(
+    parts: &Q,
     scenario: &Scenario,
     task: T,
 ) -> T::Output {
-    let never = Criterion::Never;
-    match &scenario.rotation {
-        Some(rotation) => task.run(|boundary| scenario.turning_model(rotation, never, boundary)),
-        None => task.run(|boundary| scenario.gravity_model(never, boundary)),
-    }
+    with_gravity(parts, scenario, Criterion::Never, task)
+}
+
+/// The parts of one's own, with the parameters that the scenario has.
+fn parts<C: Choice>(origin: &Origin, scenario: &Scenario) -> Result<C::Parts, ProgramError> {
+    scenario.own_parts(origin).map_err(ProgramError::from)
 }
 
 /// The scenario names a criterion that this program does not know. (It has been
@@ -353,6 +471,27 @@ fn misfit(origin: &Origin, scenario: &Scenario) -> ProgramError {
     };
     let path = crate::scenario::Path::root().key("sleep").key("criterion");
     ProgramError::from(origin.refuse(path, problem))
+}
+
+struct Check<'a, const D: usize> {
+    origin: &'a Origin,
+    scenario: &'a Scenario,
+    start: Start<D>,
+}
+
+impl<const D: usize> Task<D> for Check<'_, D> {
+    type Output = Result<Given, ProgramError>;
+
+    fn run<M: Model<D>>(self, model: impl FnOnce(Cuboid<D>) -> M) -> Self::Output {
+        let (start, grains) = (&self.start, self.start.grains.clone());
+        let model = model(start.boundary.clone());
+        Simulation::with_settings(model, grains, self.scenario.settings())
+            .map_err(|error| start.refuse(self.origin, self.scenario, error))?;
+        Ok(Given {
+            grains: start.grains.len(),
+            files: start.files().to_vec(),
+        })
+    }
 }
 
 struct Begin<'a, const D: usize> {

@@ -32,7 +32,7 @@ pub(super) fn load(
 /// The text of a preset or of a scenario file, and what it is called.
 pub(super) fn open(named: &str, program: &Program) -> Result<(String, Origin), ProgramError> {
     let (name, mut origin) = find(named)?;
-    origin.criteria = program.criteria();
+    program.acquaint(&mut origin);
     Ok((name, origin))
 }
 

@@ -59,7 +59,7 @@ pub(super) fn continued(
     }
     let file = folder.file("scenario.toml");
     let mut origin = Origin::open(&file)?;
-    origin.criteria = program.criteria();
+    program.acquaint(&mut origin);
     let scenario = read_text(&origin).map_err(ScenarioError::from)?;
     let text = fs::read(&file).map_err(access(&folder, "scenario.toml"))?;
     let job = Job {

@@ -10,9 +10,8 @@ use crate::program::criteria::Program;
 use crate::program::drive::{self, Job, Options};
 use crate::program::error::ProgramError;
 use crate::program::load::{Loaded, load};
-use crate::program::show::check_grains;
 use crate::program::signals::Signals;
-use crate::scenario::{Assignment, Dimension, Origin, Path, Scenario};
+use crate::scenario::{Assignment, Origin, Path, Scenario};
 
 pub(super) fn run(arguments: &RunArguments, program: &Program) -> Result<u8, ProgramError> {
     let mut assignments = arguments.set.clone();
@@ -61,20 +60,14 @@ pub(super) struct Run<'a> {
 }
 
 impl Run<'_> {
-    /// Runs it and says the exit code.
+    /// Refuses what can be refused at once, makes the folder, runs, and says the exit
+    /// code.
     pub(super) fn begin(self, signals: &Signals) -> Result<u8, ProgramError> {
-        match self.scenario.dimension {
-            Dimension::Two => self.begin_in::<2>(signals),
-            Dimension::Three => self.begin_in::<3>(signals),
-        }
-    }
-
-    /// Refuses what can be refused at once, makes the folder, and starts.
-    fn begin_in<const D: usize>(self, signals: &Signals) -> Result<u8, ProgramError> {
         let mut origin = self.origin;
-        let given = check_grains::<D>(&origin, &self.scenario)?;
+        let runner = self.program.runner(&self.scenario);
+        let given = runner.check(&origin, &self.scenario)?;
         let folder = RunFolder::create(self.folder, self.force)?;
-        let (text, scenario) = drive::begin(&folder, &self.scenario, given.files())?;
+        let (text, scenario) = drive::begin(&folder, &self.scenario, &given.files)?;
         drop(given);
         // What it names may have stood in the run that has just been overwritten.
         origin.folder = folder.path().to_path_buf();

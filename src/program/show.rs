@@ -5,17 +5,11 @@ use std::io::{self, Write};
 
 use serde::Serialize;
 
-use crate::boundary::Cuboid;
-use crate::engine::Simulation;
-use crate::policy::Criterion;
 use crate::program::cli::CheckArguments;
 use crate::program::criteria::Program;
 use crate::program::error::ProgramError;
 use crate::program::load::{load, unknown};
-use crate::scenario::{
-    Dimension, Gravity, Origin, Preset, Scenario, ScenarioError, SourceKind, Start, json_schema,
-    presets as all_presets,
-};
+use crate::scenario::{Preset, SourceKind, json_schema, presets as all_presets};
 
 /// Prints `text` and a new line. A reader that has gone away is no error.
 pub(super) fn say(text: &str) -> Result<(), ProgramError> {
@@ -77,10 +71,7 @@ pub(super) fn schema() -> Result<u8, ProgramError> {
 pub(super) fn check(arguments: &CheckArguments, program: &Program) -> Result<u8, ProgramError> {
     let loaded = load(&arguments.scenario, arguments.set.clone(), program)?;
     let (origin, scenario) = (&loaded.origin, &loaded.scenario);
-    let given = match scenario.dimension {
-        Dimension::Two => check_grains::<2>(origin, scenario)?.grains.len(),
-        Dimension::Three => check_grains::<3>(origin, scenario)?.grains.len(),
-    };
+    let given = program.runner(scenario).check(origin, scenario)?.grains;
     let mut parts = Vec::new();
     if given > 0 {
         parts.push(format!("{given} given"));
@@ -104,31 +95,4 @@ pub(super) fn check(arguments: &CheckArguments, program: &Program) -> Result<u8,
         parts.join(", ")
     ))
     .map(|()| 0)
-}
-
-/// Checks the grains that are written out or stand in files against each other
-/// and the walls, and returns them.
-pub(super) fn check_grains<const D: usize>(
-    origin: &Origin,
-    scenario: &Scenario,
-) -> Result<Start<D>, ScenarioError> {
-    let start = Start::<D>::given(origin, scenario)?;
-    let (grains, boundary): (_, Cuboid<D>) = (start.grains.clone(), start.boundary.clone());
-    let settings = scenario.settings();
-    let tried = match (&scenario.gravity, &scenario.rotation) {
-        (Gravity::None, _) => {
-            Simulation::with_settings(scenario.floating_model(boundary), grains, settings).map(drop)
-        }
-        (_, Some(rotation)) => {
-            // Whoever sleeps: his parameters were checked when they were read.
-            let model = scenario.turning_model(rotation, Criterion::Never, boundary);
-            Simulation::with_settings(model, grains, settings).map(drop)
-        }
-        (_, None) => {
-            let model = scenario.gravity_model(Criterion::Never, boundary);
-            Simulation::with_settings(model, grains, settings).map(drop)
-        }
-    };
-    tried.map_err(|error| start.refuse(origin, scenario, error))?;
-    Ok(start)
 }

@@ -29,7 +29,7 @@ pub struct KnownCriterion {
 
 /// What is wrong with parameters.
 #[derive(Debug)]
-enum Flaw {
+pub(super) enum Flaw {
     /// They do not fit: where, and what serde says.
     Misfit(Path, String),
     /// One is out of its range.
@@ -169,7 +169,7 @@ checked!(
     DynamoSleep
 );
 
-fn parameters<P: DeserializeOwned>(table: &Table) -> Result<P, Flaw> {
+pub(super) fn parameters<P: DeserializeOwned>(table: &Table) -> Result<P, Flaw> {
     serde_path_to_error::deserialize(Value::Table(table.clone())).map_err(|error| {
         let path = Path::from(error.path());
         Flaw::Misfit(path, error.into_inner().message().to_owned())
@@ -177,7 +177,7 @@ fn parameters<P: DeserializeOwned>(table: &Table) -> Result<P, Flaw> {
 }
 
 /// All parameters, with the defaults of those that were left out.
-fn whole<P: Serialize>(policy: &P) -> Table {
+pub(super) fn whole<P: Serialize>(policy: &P) -> Table {
     Table::try_from(policy).unwrap_or_default()
 }
 
@@ -219,7 +219,11 @@ fn known<'a>(origin: &'a Origin, name: &str, path: Path) -> Result<&'a KnownCrit
     })
 }
 
-fn refuse_flaws(origin: &Origin, path: &Path, read: Result<Table, Flaw>) -> Result<Table, Refusal> {
+pub(super) fn refuse_flaws(
+    origin: &Origin,
+    path: &Path,
+    read: Result<Table, Flaw>,
+) -> Result<Table, Refusal> {
     read.map_err(|flaw| match flaw {
         Flaw::Misfit(inside, message) => {
             let at = inside.segments().iter().fold(path.clone(), Path::join);

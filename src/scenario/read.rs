@@ -6,6 +6,7 @@ use toml::{Table, Value};
 
 use crate::scenario::criteria::{KnownCriterion, built_in_criteria, resolve};
 use crate::scenario::error::{Problem, Refusal, ScenarioError};
+use crate::scenario::parts::{KnownParts, resolve_parts};
 use crate::scenario::path::Path;
 use crate::scenario::place::{Line, Place, locate};
 use crate::scenario::schema::Scenario;
@@ -41,6 +42,8 @@ pub struct Origin {
     pub assignments: Vec<Assignment>,
     /// The sleep criteria that it may name.
     pub criteria: Vec<KnownCriterion>,
+    /// The parts of one's own that it may have parameters of.
+    pub parts: Option<KnownParts>,
 }
 
 impl Origin {
@@ -54,6 +57,7 @@ impl Origin {
             folder: PathBuf::new(),
             assignments: Vec::new(),
             criteria: built_in_criteria().to_vec(),
+            parts: None,
         }
     }
 
@@ -90,6 +94,7 @@ impl Origin {
             folder: file.parent().map(FilePath::to_path_buf).unwrap_or_default(),
             assignments: Vec::new(),
             criteria: built_in_criteria().to_vec(),
+            parts: None,
         })
     }
 
@@ -222,6 +227,7 @@ pub fn read_text(origin: &Origin) -> Result<Scenario, Refusal> {
     })?;
     validate(origin, &scenario)?;
     resolve(origin, &mut scenario)?;
+    resolve_parts(origin, &mut scenario)?;
     scenario.resolve();
     Ok(scenario)
 }

@@ -10,7 +10,7 @@ mod sleep;
 mod sources;
 
 pub use conditions::{Output, Stop};
-pub use criteria::Criteria;
+pub use criteria::{Criteria, OwnParts};
 pub use gravity::Gravity;
 pub use numbering::Numbering;
 pub use parameters::{Guards, Parameters, Threshold};
@@ -67,6 +67,9 @@ pub struct Scenario {
     /// Parameters of sleep criteria other than the paper's, by name.
     #[serde(default, skip_serializing_if = "Criteria::is_empty")]
     pub criteria: Criteria,
+    /// Parameters of parts of one's own, by name: only for programs that have such.
+    #[serde(default, skip_serializing_if = "OwnParts::is_empty")]
+    pub parts: OwnParts,
     /// Sleeping grains check at intervals whether they are still supported.
     /// Left out: they don't.
     #[serde(default, skip_serializing_if = "Option::is_none")]

@@ -8,6 +8,7 @@ use crate::particle::{Mode, Particle, ParticleId, Vector};
 use crate::program::criteria::{Task, continued_without_sleep};
 use crate::program::drive::{Job, Replay};
 use crate::program::error::ProgramError;
+use crate::program::parts::Refit;
 use crate::scenario::{Gravity, Scenario, Start};
 use crate::time::Time;
 
@@ -37,13 +38,14 @@ pub(in crate::program) struct Census {
 }
 
 /// Takes the census of a run in which grains fell asleep so many times.
-pub(in crate::program) struct TakeCensus<'a, const D: usize> {
+pub(in crate::program) struct TakeCensus<'a, Q, const D: usize> {
     pub(in crate::program) job: &'a Job,
     pub(in crate::program) start: Start<D>,
     pub(in crate::program) sleeps: u64,
+    pub(in crate::program) parts: Q,
 }
 
-impl<const D: usize> Task<D> for TakeCensus<'_, D> {
+impl<Q: Refit, const D: usize> Task<D> for TakeCensus<'_, Q, D> {
     type Output = Result<Census, ProgramError>;
 
     fn run<M: Model<D>>(self, model: impl FnOnce(Cuboid<D>) -> M) -> Self::Output {
@@ -57,7 +59,7 @@ impl<const D: usize> Task<D> for TakeCensus<'_, D> {
             if !on_to_sleep(&mut replay, which + 1) {
                 break;
             }
-            if let Some(was_false) = ask(&self.job.scenario, &boundary, &replay)? {
+            if let Some(was_false) = ask(&self.parts, &self.job.scenario, &boundary, &replay)? {
                 census.sleeps += 1;
                 census.false_sleeps += u64::from(was_false);
             }
@@ -83,7 +85,8 @@ fn on_to_sleep<M: Model<D>, const D: usize>(replay: &mut Replay<M, D>, sleeps: u
 
 /// Whether the grain that has just fallen asleep would have gone away; `None` if
 /// that can't be found out.
-fn ask<M: Model<D>, const D: usize>(
+fn ask<Q: Refit, M: Model<D>, const D: usize>(
+    parts: &Q,
     scenario: &Scenario,
     boundary: &Cuboid<D>,
     replay: &Replay<M, D>,
@@ -108,7 +111,7 @@ fn ask<M: Model<D>, const D: usize>(
         boundary: boundary.clone(),
         sleeper,
     };
-    Ok(continued_without_sleep(&scenario, task))
+    Ok(continued_without_sleep(parts, &scenario, task))
 }
 
 /// Follows one grain while nobody falls asleep or wakes.

@@ -12,13 +12,12 @@ use crate::program::drive::scenario_text;
 use crate::program::error::ProgramError;
 use crate::program::load::open;
 use crate::program::run::{seed_is, until};
-use crate::program::show::check_grains;
 use crate::program::sweep::MOST_RUNS;
 use crate::program::sweep::crew::Tasks;
 use crate::program::sweep::error::SweepError;
 use crate::program::sweep::names::{names_of, plain, shortened, unique};
 use crate::program::sweep::values::Variation;
-use crate::scenario::{Dimension, Origin, Path, Scenario, read_text};
+use crate::scenario::{Origin, Path, Scenario, read_text};
 
 /// All runs of a sweep, in their order: the first variation changes slowest, the
 /// seed fastest.
@@ -54,7 +53,7 @@ impl Plan {
             variations,
             text: String::new(),
         };
-        let files = plan.check(combinations, arguments.seed)?;
+        let files = plan.check(combinations, arguments.seed, program)?;
         plan.name_combinations(combinations);
         plan.text = plan.describe(files)?;
         Ok(plan)
@@ -62,7 +61,12 @@ impl Plan {
 
     /// Reads every combination once; the seed decides about nothing that can be
     /// known beforehand. Returns the files of grains with their fingerprints.
-    fn check(&mut self, combinations: usize, seed: Option<u64>) -> Result<Table, ProgramError> {
+    fn check(
+        &mut self,
+        combinations: usize,
+        seed: Option<u64>,
+        program: &Program,
+    ) -> Result<Table, ProgramError> {
         let mut files = Table::new();
         // By fingerprint.
         let mut known: BTreeMap<u64, usize> = BTreeMap::new();
@@ -80,11 +84,8 @@ impl Plan {
             if combination == 0 {
                 self.first_seed = scenario.seed;
             }
-            let checked = match scenario.dimension {
-                Dimension::Two => check_grains::<2>(&origin, &scenario).map(drop),
-                Dimension::Three => check_grains::<3>(&origin, &scenario).map(drop),
-            };
-            checked.map_err(|error| one(error.into()))?;
+            let checked = program.runner(&scenario).check(&origin, &scenario);
+            checked.map_err(one)?;
             let mut text = scenario_text(&scenario)?;
             for file in scenario
                 .grains

@@ -49,3 +49,38 @@ impl JsonSchema for Criteria {
         })
     }
 }
+
+/// Parameters of parts of one's own (a collision rule, say), by name: only for programs
+/// that have such.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(transparent)]
+pub struct OwnParts(pub BTreeMap<String, Table>);
+
+impl OwnParts {
+    /// Nothing is given.
+    #[must_use]
+    pub fn is_empty(&self) -> bool {
+        self.0.is_empty()
+    }
+
+    /// What is given for the parts of this name.
+    #[must_use]
+    pub fn of(&self, name: &str) -> Table {
+        self.0.get(name).cloned().unwrap_or_default()
+    }
+}
+
+impl JsonSchema for OwnParts {
+    fn schema_name() -> Cow<'static, str> {
+        "OwnParts".into()
+    }
+
+    fn json_schema(_: &mut SchemaGenerator) -> Schema {
+        json_schema!({
+            "type": "object",
+            "description": "Parameters of parts of one's own, by name: only for programs that \
+                            have such.",
+            "additionalProperties": { "type": "object" },
+        })
+    }
+}

@@ -1,0 +1,7 @@
+//! The program `grainfall` as it is, for the tests to compare with.
+
+use std::process::ExitCode;
+
+fn main() -> ExitCode {
+    grainfall::program::main()
+}
