@@ -39,9 +39,9 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
             page
         };
         self.fetched = page;
-        for step in 0..STEPS.len() {
+        for (step, ahead) in STEPS.into_iter().enumerate() {
             for slot in first..=page {
-                for particle in self.queue.filed_in(slot + STEPS[step]) {
+                for particle in self.queue.filed_in(slot + ahead) {
                     self.fetch(particle, step);
                 }
             }

@@ -98,14 +98,25 @@ fn a_run_is_gone_on_with_explained_and_compared_with_them() {
     // The program as it is has not these parts, and says so.
     let (code, said) = program(STOCK, place.path(), &["resume", "killed", "--quiet"]);
     assert_eq!(code, Some(2));
-    assert!(said.contains("no parts of its own") && said.contains("chute"), "{said}");
+    assert!(
+        said.contains("no parts of its own") && said.contains("chute"),
+        "{said}"
+    );
     let (code, said) = program(OWN, place.path(), &["resume", "killed", "--quiet"]);
     assert_eq!(code, Some(0), "{said}");
-    assert_eq!(summary(&killed)["trajectory_hash"], whole["trajectory_hash"]);
+    assert_eq!(
+        summary(&killed)["trajectory_hash"],
+        whole["trajectory_hash"]
+    );
 
     let why = ["why", "whole", "--particle", "40", "--json"];
     assert_eq!(program(OWN, place.path(), &why).0, Some(0));
-    let compare = ["compare", CHUTE, "--policies", "slow_descent,isostatic_support"];
+    let compare = [
+        "compare",
+        CHUTE,
+        "--policies",
+        "slow_descent,isostatic_support",
+    ];
     let (code, said) = program(OWN, place.path(), &compare);
     assert_eq!(code, Some(0), "{said}");
     let alike = format!("| {} ", whole["events"]["pair"]);
