@@ -5,7 +5,7 @@ mod census;
 mod report;
 
 pub(super) use arguments::CompareArguments;
-pub(super) use census::{Census, TakeCensus};
+pub(super) use census::{Census, Had, TakeCensus};
 
 use std::fs;
 use std::path::PathBuf;
@@ -82,7 +82,10 @@ fn take_census(
                     let Some((policy, folder)) = runs.get(run) else {
                         break;
                     };
-                    let row = row_of(policy, folder, program);
+                    let row = row_of(policy, folder, program, signals);
+                    if signals.exit_code().is_some() {
+                        break;
+                    }
                     if let Ok(mut found) = found.lock() {
                         found.push((run, row));
                     }
@@ -100,7 +103,12 @@ fn take_census(
 }
 
 /// What a run has come to, and its census.
-fn row_of(policy: &str, folder: &std::path::Path, program: &Program) -> Result<Row, ProgramError> {
+fn row_of(
+    policy: &str,
+    folder: &std::path::Path,
+    program: &Program,
+    signals: &Signals,
+) -> Result<Row, ProgramError> {
     let folder = RunFolder::open(folder)?;
     let file = folder.file("scenario.toml");
     let mut origin = Origin::open(&file)?;
@@ -119,7 +127,11 @@ fn row_of(policy: &str, folder: &std::path::Path, program: &Program) -> Result<R
         options: Options::default(),
     };
     let runner = program.runner(&job.scenario);
-    let census = runner.census(&job, summary.events.sleep)?;
+    let had = Had {
+        events: summary.events.total,
+        sleeps: summary.events.sleep,
+    };
+    let census = runner.census(&job, had, signals)?;
     Ok(Row {
         policy: policy.to_owned(),
         summary,

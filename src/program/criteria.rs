@@ -14,7 +14,7 @@ use crate::engine::Simulation;
 use crate::model::{Model, StatePolicy};
 use crate::output::Frame;
 use crate::policy::Criterion;
-use crate::program::compare::{Census, TakeCensus};
+use crate::program::compare::{Census, Had, TakeCensus};
 use crate::program::drive::{self, Attempt, Job};
 use crate::program::error::ProgramError;
 use crate::program::parts::{AsTheyAre, Refit};
@@ -208,9 +208,8 @@ pub(super) trait Runner: Send + Sync {
         question: Question,
     ) -> Result<Option<Report>, ProgramError>;
 
-    /// Goes through a run again in which grains fell asleep so many times, and
-    /// counts what was false.
-    fn census(&self, job: &Job, sleeps: u64) -> Result<Census, ProgramError>;
+    /// Goes through a run again that had so many events, and counts what was false.
+    fn census(&self, job: &Job, had: Had, signals: &Signals) -> Result<Census, ProgramError>;
 
     /// Checks the grains that are written out or stand in files against each other
     /// and the walls, and what the parts of the model say of themselves.
@@ -335,10 +334,10 @@ impl<C: Choice> Runner for C {
         }
     }
 
-    fn census(&self, job: &Job, sleeps: u64) -> Result<Census, ProgramError> {
+    fn census(&self, job: &Job, had: Had, signals: &Signals) -> Result<Census, ProgramError> {
         match job.scenario.dimension {
-            Dimension::Two => count::<_, 2>(self, job, sleeps),
-            Dimension::Three => count::<_, 3>(self, job, sleeps),
+            Dimension::Two => count::<_, 2>(self, job, had, signals),
+            Dimension::Three => count::<_, 3>(self, job, had, signals),
         }
     }
 
@@ -350,7 +349,12 @@ impl<C: Choice> Runner for C {
     }
 }
 
-fn count<C, const D: usize>(choice: &C, job: &Job, sleeps: u64) -> Result<Census, ProgramError>
+fn count<C, const D: usize>(
+    choice: &C,
+    job: &Job,
+    had: Had,
+    signals: &Signals,
+) -> Result<Census, ProgramError>
 where
     C: Choice,
     C::Policy: StatePolicy<D>,
@@ -358,8 +362,9 @@ where
     let task = TakeCensus {
         job,
         start: Start::<D>::new(&job.origin, &job.scenario)?,
-        sleeps,
+        had,
         parts: parts::<C>(&job.origin, &job.scenario)?,
+        signals,
     };
     with_model(choice, &job.origin, &job.scenario, task)?
 }

@@ -134,6 +134,31 @@ fn false_sleeps_are_found() {
     assert_eq!(wrong, questioned);
 }
 
+/// A run in which nothing happens ends, and so does its census.
+#[test]
+fn nothing_that_happens_is_compared() {
+    let place = tempfile::tempdir().unwrap();
+    let scenario = "dimension = 2\ngravity = \"none\"\nstop.events = 100\n\
+        boundaries = [{ periodic = { length = 10 } }, { periodic = { length = 10 } }]\n\
+        grains = [{ position = [1, 1], velocity = [0.1, 0] }, \
+        { position = [1, 5], velocity = [0.1, 0] }]";
+    fs::write(place.path().join("still.toml"), scenario).unwrap();
+    let arguments = [
+        "compare",
+        "still.toml",
+        "--policies",
+        "slow_descent",
+        "--out",
+        "still",
+    ];
+    assert_eq!(grainfall(place.path(), &arguments).0, 0);
+    let rows = rows(&place.path().join("still"));
+    assert_eq!(
+        (of(&rows[0], "events"), of(&rows[0], "sleeps_questioned")),
+        (0.0, 0.0)
+    );
+}
+
 #[test]
 fn what_cannot_be_compared_is_refused() {
     let place = tempfile::tempdir().unwrap();

@@ -9,6 +9,7 @@ use crate::program::criteria::{Task, continued_without_sleep};
 use crate::program::drive::{Job, Replay};
 use crate::program::error::ProgramError;
 use crate::program::parts::Refit;
+use crate::program::signals::Signals;
 use crate::scenario::{Gravity, Scenario, Start};
 use crate::time::Time;
 
@@ -23,6 +24,8 @@ const PATIENCE: f64 = 2.0;
 const LOOK_EVERY: f64 = 0.02;
 /// The most events of one continuation: those of a collapse are not followed.
 const MOST_EVENTS: u64 = 5_000_000;
+/// After so many events it is seen whether a signal has come.
+const SLICE: u64 = 100_000;
 
 /// What was counted.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
@@ -37,12 +40,21 @@ pub(in crate::program) struct Census {
     pub(in crate::program) false_wakes: u64,
 }
 
-/// Takes the census of a run in which grains fell asleep so many times.
+/// What a run had.
+#[derive(Clone, Copy, Debug)]
+pub(in crate::program) struct Had {
+    pub(in crate::program) events: u64,
+    pub(in crate::program) sleeps: u64,
+}
+
+/// Takes the census of a run that had so many events, and so many of them sleeps.
 pub(in crate::program) struct TakeCensus<'a, Q, const D: usize> {
     pub(in crate::program) job: &'a Job,
     pub(in crate::program) start: Start<D>,
-    pub(in crate::program) sleeps: u64,
+    pub(in crate::program) had: Had,
     pub(in crate::program) parts: Q,
+    /// After one of these it is left unfinished.
+    pub(in crate::program) signals: &'a Signals,
 }
 
 impl<Q: Refit, const D: usize> Task<D> for TakeCensus<'_, Q, D> {
@@ -52,11 +64,11 @@ impl<Q: Refit, const D: usize> Task<D> for TakeCensus<'_, Q, D> {
         let boundary = self.start.boundary.clone();
         let mut replay = Replay::new(self.job, self.start, model)?;
         let mut census = Census::default();
-        let questions = QUESTIONS.min(self.sleeps);
+        let questions = QUESTIONS.min(self.had.sleeps);
         for question in 0..questions {
             // In the middle of each of so many equal parts.
-            let which = (2 * question + 1) * self.sleeps / (2 * questions);
-            if !on_to_sleep(&mut replay, which + 1) {
+            let which = (2 * question + 1) * self.had.sleeps / (2 * questions);
+            if !on_to_sleep(&mut replay, which + 1, self.signals) {
                 break;
             }
             if let Some(was_false) = ask(&self.parts, &self.job.scenario, &boundary, &replay)? {
@@ -64,7 +76,13 @@ impl<Q: Refit, const D: usize> Task<D> for TakeCensus<'_, Q, D> {
                 census.false_sleeps += u64::from(was_false);
             }
         }
-        replay.advance(Time::NEVER, u64::MAX);
+        while self.signals.exit_code().is_none() {
+            let on = replay.simulation.counts().total() + SLICE;
+            if on >= self.had.events || !replay.advance(Time::NEVER, on) {
+                replay.advance(Time::NEVER, self.had.events);
+                break;
+            }
+        }
         let diary = replay.diary();
         (census.wakes, census.false_wakes) = (diary.wakes, diary.false_wakes);
         Ok(census)
@@ -73,10 +91,14 @@ impl<Q: Refit, const D: usize> Task<D> for TakeCensus<'_, Q, D> {
 
 /// On, event by event, until grains have fallen asleep so many times; false if they
 /// never do.
-fn on_to_sleep<M: Model<D>, const D: usize>(replay: &mut Replay<M, D>, sleeps: u64) -> bool {
+fn on_to_sleep<M: Model<D>, const D: usize>(
+    replay: &mut Replay<M, D>,
+    sleeps: u64,
+    signals: &Signals,
+) -> bool {
     while replay.simulation.counts().sleep < sleeps {
         let next = replay.simulation.counts().total() + 1;
-        if !replay.advance(Time::NEVER, next) {
+        if signals.exit_code().is_some() || !replay.advance(Time::NEVER, next) {
             return replay.simulation.counts().sleep >= sleeps;
         }
     }
