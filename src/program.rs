@@ -61,7 +61,8 @@ fn run_command(program: &Program) -> ExitCode {
         Command::Reference(arguments) => reference::reference(&arguments),
         Command::Draw(arguments) => draw::draw(&arguments),
         Command::Analyse(arguments) => analyse::analyse(&arguments),
-        Command::Reproduce(arguments) => reproduce::reproduce(&arguments, program),
+        // The paper's model, whatever parts this program has.
+        Command::Reproduce(arguments) => reproduce::reproduce(&arguments, &Program::new()),
         Command::Validate(arguments) => validate::validate(&arguments),
         Command::Bench(arguments) => bench::bench(&arguments),
     };

@@ -2,7 +2,7 @@
 
 use crate::engine::cells::Found;
 use crate::engine::ledger::Entry;
-use crate::engine::projection::{Member, Touch, project};
+use crate::engine::projection::{Member, Touch, project, project_within};
 use crate::engine::settings::Collapse;
 use crate::engine::simulation::Simulation;
 use crate::engine::slot::Partner;
@@ -198,16 +198,18 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
         }
         let gravity = self.model.dynamics().gravity(now);
         let hurried = lasted * gravity.norm_squared().sqrt() < HURRY * exit * f64::from(CONFINED);
-        // Where the ground moves the bars do so together: it falls relative to them.
+        // Where the ground moves the bars do so together: it falls relative to them. How
+        // it falls depends neither on its mass nor on the size of gravity.
         for bar in &mut bars {
             bar.speed = 0.0;
+            bar.one.mass = 1.0;
         }
-        let held = |fall: Vec<Vector<D>>| {
-            fall[0].norm_squared().sqrt() < HELD * gravity.norm_squared().sqrt()
-        };
-        // It is not found in a wedge so narrow that its sides, to hold the grain, press
-        // with thousands of times its weight.
-        hurried && project(&[gravity], &bars, 0.0).is_none_or(held)
+        let strength = gravity.norm_squared().sqrt();
+        // In a narrow wedge the sides press with thousands of times the weight, and what
+        // is left of that is not exact: a tenth of what would hold it.
+        let held = |fall: Vec<Vector<D>>| fall[0].norm_squared().sqrt() < HELD;
+        let way = |fall: Vector<D>| project_within(&[fall], &bars, 0.0, 0.1 * HELD);
+        hurried && strength > 0.0 && way(gravity / strength).is_some_and(held)
     }
 
     fn name_collapse(&self, particle: u32, run: u32) -> Collapse {

@@ -89,6 +89,16 @@ pub(super) fn project<const D: usize>(
     touches: &[Touch<D>],
     exit: f64,
 ) -> Option<Vec<Vector<D>>> {
+    project_within(velocities, touches, exit, CREEP)
+}
+
+/// The same, where surfaces may still close as fast as `creep`, in √(gd).
+pub(super) fn project_within<const D: usize>(
+    velocities: &[Vector<D>],
+    touches: &[Touch<D>],
+    exit: f64,
+    creep: f64,
+) -> Option<Vec<Vector<D>>> {
     let count = touches.len();
     let shortfalls: Vec<f64> = touches
         .iter()
@@ -123,7 +133,7 @@ pub(super) fn project<const D: usize>(
             }
             // Contacts that work against each other only seem to agree, by
             // their softness.
-            let free = |touch: &Touch<D>| touch.separation(&moved) > 0.9 * exit - CREEP;
+            let free = |touch: &Touch<D>| touch.separation(&moved) > 0.9 * exit - creep;
             return touches.iter().all(free).then_some(moved);
         };
         active.push(joining);

@@ -112,7 +112,7 @@ fn row_of(
     let folder = RunFolder::open(folder)?;
     let file = folder.file("scenario.toml");
     let mut origin = Origin::open(&file)?;
-    program.acquaint(&mut origin);
+    program.acquaint_run(&mut origin);
     let scenario = read_text(&origin).map_err(ScenarioError::from)?;
     let text = fs::read(&file).map_err(ProgramError::io(file.display().to_string()))?;
     let ended = folder.file("summary.json");

@@ -168,6 +168,12 @@ impl Program {
         origin.criteria = self.criteria();
         origin.parts = self.parts;
     }
+
+    /// The same for the scenario of a run that has begun.
+    pub(super) fn acquaint_run(&self, origin: &mut Origin) {
+        self.acquaint(origin);
+        origin.parts = self.parts.map(KnownParts::required);
+    }
 }
 
 /// The grains of a scenario that are written out or stand in files.

@@ -17,7 +17,10 @@ use crate::scenario::{KnownCriterion, KnownParts};
 /// The program makes the model of a scenario from built-in parts and hands it over:
 /// a refit returns the one that runs, with a collision rule, a dynamics (and a
 /// predictor for its flights) or a boundary of one's own. The fields of the type are
-/// its parameters in scenarios, under `[parts.NAME]`.
+/// its parameters in scenarios, under `[parts.NAME]`; whether they are within their
+/// range is for the `validate` of the part that gets them. A boundary should not be
+/// derived from that of `parts`: a run that is gone on with has another there. A dynamics
+/// takes the place of the scenario's `rotation`, too.
 ///
 /// ```no_run
 /// use std::process::ExitCode;
@@ -29,7 +32,7 @@ use crate::scenario::{KnownCriterion, KnownParts};
 /// use grainfall::program::{Program, Refit};
 /// use serde::{Deserialize, Serialize};
 ///
-/// /// Restitution that falls with the speed of impact: α(v) = α − loss v^(1/5).
+/// /// Restitutions that fall with the speed of impact: α(v) = α − loss v^(1/5).
 /// #[derive(Serialize, Deserialize)]
 /// struct Viscous {
 ///     loss: f64,
@@ -48,6 +51,7 @@ use crate::scenario::{KnownCriterion, KnownParts};
 ///         let lost = self.loss * libm::pow(hit.closing_speed(), 0.2);
 ///         let now = Restitution {
 ///             restitution: (self.constant.restitution - lost).max(0.0),
+///             frozen_restitution: (self.constant.frozen_restitution - lost).max(0.0),
 ///             ..self.constant
 ///         };
 ///         now.collide(hit, spins)
@@ -117,8 +121,8 @@ impl Program {
     /// With the built-in criteria, and parts of one's own in the models: `run`,
     /// `resume`, `sweep`, `compare`, `why` and `check` then work with those. The parameters
     /// of the parts are read from `[parts.NAME]`; one with a default may be left out.
-    /// `scenario.toml` in the folder of a run has them all, so that no other program
-    /// goes on with it.
+    /// `scenario.toml` in the folder of a run names them all, so that no other program
+    /// goes on with it, and this one with no other's.
     #[must_use]
     pub fn with_parts<Q>(name: &'static str) -> RefittedProgram<Q>
     where

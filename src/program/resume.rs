@@ -59,7 +59,7 @@ pub(super) fn continued(
     }
     let file = folder.file("scenario.toml");
     let mut origin = Origin::open(&file)?;
-    program.acquaint(&mut origin);
+    program.acquaint_run(&mut origin);
     let scenario = read_text(&origin).map_err(ScenarioError::from)?;
     let text = fs::read(&file).map_err(access(&folder, "scenario.toml"))?;
     let job = Job {

@@ -134,7 +134,7 @@ pub(super) fn why(arguments: &WhyArguments, program: &Program) -> Result<u8, Pro
     let folder = RunFolder::open(&arguments.folder)?;
     let file = folder.file("scenario.toml");
     let mut origin = Origin::open(&file)?;
-    program.acquaint(&mut origin);
+    program.acquaint_run(&mut origin);
     let scenario = read_text(&origin).map_err(ScenarioError::from)?;
     let text = fs::read(&file).map_err(ProgramError::io(file.display().to_string()))?;
     let job = Job {

@@ -218,7 +218,10 @@ impl<const D: usize> Start<D> {
         let (path, hint) = match &error {
             SetupError::Particle { id, .. } => (of(*id), None),
             SetupError::OutsideWall { id, wall, .. } => {
-                (of(*id), wall_place(scenario, wall.index()))
+                // Walls of one's own are not in the scenario.
+                let known = origin.parts.is_none();
+                let hint = wall_place(scenario, wall.index()).filter(|_| known);
+                (of(*id), hint)
             }
             SetupError::Overlap { first, second, .. } => {
                 let place = of(*first).to_string();
@@ -229,6 +232,11 @@ impl<const D: usize> Start<D> {
             }
             SetupError::PeriodTooShort { axis, .. } => {
                 (Path::root().key("boundaries").index(*axis), None)
+            }
+            SetupError::Parameter { field, .. } if origin.parts.is_some() => {
+                // Those of built-in parts were checked when they were read.
+                let own = origin.parts.map_or("", |parts| parts.name);
+                (Path::root().key("parts").key(own).key(field), None)
             }
             _ => (Path::root(), None),
         };

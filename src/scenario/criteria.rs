@@ -51,7 +51,7 @@ impl KnownCriterion {
                 let policy: P = parameters(table)?;
                 StatePolicy::<2>::validate(&policy).map_err(Flaw::Range)?;
                 StatePolicy::<3>::validate(&policy).map_err(Flaw::Range)?;
-                Ok(whole(&policy))
+                whole(&policy)
             },
         }
     }
@@ -66,7 +66,7 @@ impl KnownCriterion {
             read: |table| {
                 let read: C = parameters(table)?;
                 read.check().map_err(Flaw::Range)?;
-                Ok(whole(&read))
+                whole(&read)
             },
         }
     }
@@ -177,8 +177,11 @@ pub(super) fn parameters<P: DeserializeOwned>(table: &Table) -> Result<P, Flaw> 
 }
 
 /// All parameters, with the defaults of those that were left out.
-pub(super) fn whole<P: Serialize>(policy: &P) -> Table {
-    Table::try_from(policy).unwrap_or_default()
+pub(super) fn whole<P: Serialize>(policy: &P) -> Result<Table, Flaw> {
+    Table::try_from(policy).map_err(|error| {
+        let message = format!("its parameters cannot be written as a table: {error}");
+        Flaw::Misfit(Path::root(), message)
+    })
 }
 
 /// Refuses criteria that nobody knows and parameters that do not fit; writes out
@@ -189,12 +192,12 @@ pub(super) fn resolve(origin: &Origin, scenario: &mut Scenario) -> Result<(), Re
     for (name, table) in &scenario.criteria.0 {
         let path = Path::root().key("criteria").key(name);
         let criterion = known(origin, name, path.clone())?;
-        refuse_flaws(origin, &path, (criterion.read)(table))?;
+        (criterion.read)(table).map_err(|flaw| refuse_flaw(origin, &path, flaw))?;
     }
     let path = Path::root().key("criteria").key(&chosen);
     let criterion = known(origin, &chosen, path.clone())?;
     let given = (criterion.read)(&scenario.criteria.of(&chosen));
-    let all = refuse_flaws(origin, &path, given)?;
+    let all = given.map_err(|flaw| refuse_flaw(origin, &path, flaw))?;
     if !all.is_empty() {
         scenario.criteria.0.insert(chosen, all);
     }
@@ -219,12 +222,8 @@ fn known<'a>(origin: &'a Origin, name: &str, path: Path) -> Result<&'a KnownCrit
     })
 }
 
-pub(super) fn refuse_flaws(
-    origin: &Origin,
-    path: &Path,
-    read: Result<Table, Flaw>,
-) -> Result<Table, Refusal> {
-    read.map_err(|flaw| match flaw {
+pub(super) fn refuse_flaw(origin: &Origin, path: &Path, flaw: Flaw) -> Refusal {
+    match flaw {
         Flaw::Misfit(inside, message) => {
             let at = inside.segments().iter().fold(path.clone(), Path::join);
             misfit(origin, at, &message)
@@ -241,7 +240,7 @@ pub(super) fn refuse_flaws(
             origin.refuse(path.clone().key(field), problem)
         }
         Flaw::Range(other) => origin.refuse(path.clone(), other),
-    })
+    }
 }
 
 impl Scenario {

@@ -4,7 +4,7 @@ use serde::Serialize;
 use serde::de::DeserializeOwned;
 use toml::Table;
 
-use crate::scenario::criteria::{Flaw, parameters, refuse_flaws, whole};
+use crate::scenario::criteria::{Flaw, parameters, refuse_flaw, whole};
 use crate::scenario::error::{Problem, Refusal};
 use crate::scenario::path::Path;
 use crate::scenario::read::Origin;
@@ -15,6 +15,9 @@ use crate::scenario::schema::Scenario;
 pub struct KnownParts {
     /// Their name in scenarios.
     pub name: &'static str,
+    /// Whether they have to be named, with or without parameters: a run of another
+    /// program does not.
+    required: bool,
     read: fn(&Table) -> Result<Table, Flaw>,
 }
 
@@ -25,7 +28,17 @@ impl KnownParts {
     pub fn of<Q: Serialize + DeserializeOwned>(name: &'static str) -> Self {
         KnownParts {
             name,
-            read: |table| parameters::<Q>(table).map(|parts| whole(&parts)),
+            required: false,
+            read: |table| whole(&parameters::<Q>(table)?),
+        }
+    }
+
+    /// The same, for the scenario of a run that has begun, where they have to be named.
+    #[must_use]
+    pub fn required(self) -> Self {
+        KnownParts {
+            required: true,
+            ..self
         }
     }
 }
@@ -46,14 +59,22 @@ pub(super) fn resolve_parts(origin: &Origin, scenario: &mut Scenario) -> Result<
                 format!("this program has no parts `{name}`: its parts of its own are `{known}`")
             }
             None => format!(
-                "this program has no parts of its own: a run with `{name}` belongs to one that has"
+                "no parts `{name}` are known here: only the program that has them knows them, to \
+                 run, resume, sweep, compare, explain and check"
             ),
         };
         return Err(origin.refuse(path(name), Problem::Schema { message }));
     }
     if let Some(known) = origin.parts {
+        if known.required && !scenario.parts.0.contains_key(known.name) {
+            let message = format!(
+                "a run without the parts `{}`, which this program has: it belongs to another",
+                known.name
+            );
+            return Err(origin.refuse(Path::root(), Problem::Schema { message }));
+        }
         let read = (known.read)(&scenario.parts.of(known.name));
-        let all = refuse_flaws(origin, &path(known.name), read)?;
+        let all = read.map_err(|flaw| refuse_flaw(origin, &path(known.name), flaw))?;
         scenario.parts.0.insert(known.name.to_owned(), all);
     }
     Ok(())
@@ -69,14 +90,6 @@ impl Scenario {
     pub fn own_parts<Q: DeserializeOwned>(&self, origin: &Origin) -> Result<Q, Refusal> {
         let name = origin.parts.map_or("", |known| known.name);
         let path = Path::root().key("parts").key(name);
-        match parameters(&self.parts.of(name)) {
-            Ok(parts) => Ok(parts),
-            Err(flaw) => Err(refuse_flaws(origin, &path, Err(flaw))
-                .err()
-                .unwrap_or_else(|| {
-                    let message = "parameters that do not fit".to_owned();
-                    origin.refuse(path, Problem::Schema { message })
-                })),
-        }
+        parameters(&self.parts.of(name)).map_err(|flaw| refuse_flaw(origin, &path, flaw))
     }
 }

@@ -82,6 +82,7 @@ fn an_interrupted_run_goes_on_with_it() {
         .spawn()
         .unwrap();
     while !killed.join("checkpoint.previous").exists() {
+        assert!(child.try_wait().unwrap().is_none(), "it has ended before");
         std::thread::yield_now();
     }
     child.kill().unwrap();

@@ -67,41 +67,43 @@ fn gravity_leans() {
         grains = [{ position = [0, 0] }]\nparts.chute.tilt = 30";
     run(OWN, place.path(), "fall", scenario);
     let text = std::fs::read_to_string(place.path().join("fall/frames.xyz")).unwrap();
-    let numbers: Vec<f64> = text
-        .lines()
-        .last()
-        .unwrap()
-        .split_whitespace()
-        .filter_map(|word| word.parse().ok())
-        .collect();
-    let there = |wanted: f64| numbers.iter().any(|x| (x - wanted).abs() < 1.0e-12);
-    assert!(there(1.0) && there(-3.0_f64.sqrt()), "{numbers:?}");
+    // id x y vx vy …
+    let last: Vec<&str> = text.lines().last().unwrap().split_whitespace().collect();
+    let number = |column: usize| last[column].parse::<f64>().unwrap();
+    let (x, y) = (number(1), number(2));
+    assert!((x - 1.0).abs() < 1.0e-12, "{x}");
+    assert!((y + 3.0_f64.sqrt()).abs() < 1.0e-12, "{y}");
 }
 
 #[test]
-fn a_run_is_gone_on_with_explained_and_compared_with_them() {
+fn a_run_is_gone_on_with_them_and_no_others() {
     let place = tempfile::tempdir().unwrap();
-    let text = std::fs::read_to_string(CHUTE).unwrap();
+    // Long enough to be killed on the way.
+    let text = std::fs::read_to_string(CHUTE)
+        .unwrap()
+        .replace("count = 12", "count = 150");
     let whole = run(OWN, place.path(), "whole", &text);
-    let mut child = Command::new(OWN)
-        .current_dir(place.path())
-        .args(["run", CHUTE, "--quiet", "--out", "killed"])
-        .args(["--checkpoint-every", "1"])
-        .spawn()
-        .unwrap();
-    let killed = place.path().join("killed");
-    while !killed.join("checkpoint.previous").exists() {
-        std::thread::yield_now();
-    }
-    child.kill().unwrap();
-    child.wait().unwrap();
+    let kill = |binary: &str, scenario: &str, name: &str| {
+        let mut child = Command::new(binary)
+            .current_dir(place.path())
+            .args(["run", scenario, "--quiet", "--out", name])
+            .args(["--checkpoint-every", "1"])
+            .spawn()
+            .unwrap();
+        let killed = place.path().join(name);
+        while !killed.join("checkpoint.previous").exists() {
+            assert!(child.try_wait().unwrap().is_none(), "it has ended before");
+            std::thread::yield_now();
+        }
+        child.kill().unwrap();
+        child.wait().unwrap();
+        killed
+    };
+    let killed = kill(OWN, "whole.toml", "killed");
     // The program as it is has not these parts, and says so.
     let (code, said) = program(STOCK, place.path(), &["resume", "killed", "--quiet"]);
     assert_eq!(code, Some(2));
-    assert!(
-        said.contains("no parts of its own") && said.contains("chute"),
-        "{said}"
-    );
+    assert!(said.contains("no parts `chute` are known here"), "{said}");
     let (code, said) = program(OWN, place.path(), &["resume", "killed", "--quiet"]);
     assert_eq!(code, Some(0), "{said}");
     assert_eq!(
@@ -109,14 +111,24 @@ fn a_run_is_gone_on_with_explained_and_compared_with_them() {
         whole["trajectory_hash"]
     );
 
+    // Nor does a run of that program go on with these parts.
+    let plain = text.split("[parts.chute]").next().unwrap();
+    std::fs::write(place.path().join("plain.toml"), plain).unwrap();
+    kill(STOCK, "plain.toml", "plain");
+    let (code, said) = program(OWN, place.path(), &["resume", "plain", "--quiet"]);
+    assert_eq!(code, Some(2));
+    assert!(said.contains("a run without the parts `chute`"), "{said}");
+}
+
+#[test]
+fn a_run_is_explained_and_compared_with_them() {
+    let place = tempfile::tempdir().unwrap();
+    let text = std::fs::read_to_string(CHUTE).unwrap();
+    let whole = run(OWN, place.path(), "whole", &text);
     let why = ["why", "whole", "--particle", "40", "--json"];
     assert_eq!(program(OWN, place.path(), &why).0, Some(0));
-    let compare = [
-        "compare",
-        CHUTE,
-        "--policies",
-        "slow_descent,isostatic_support",
-    ];
+    let policies = "slow_descent,isostatic_support";
+    let compare = ["compare", CHUTE, "--policies", policies];
     let (code, said) = program(OWN, place.path(), &compare);
     assert_eq!(code, Some(0), "{said}");
     let alike = format!("| {} ", whole["events"]["pair"]);
@@ -134,5 +146,8 @@ fn wrong_parameters_are_refused() {
     assert!(refused("parts.chute.tlit=1").contains("did you mean `tilt`?"));
     assert!(refused("parts.slide.tilt=1").contains("`chute`"));
     let said = refused("parts.chute.loss=-1");
-    assert!(said.contains("loss") && said.contains("0 … 1"), "{said}");
+    assert!(
+        said.contains("parts.chute.loss") && said.contains("0 … 1"),
+        "{said}"
+    );
 }

@@ -5,6 +5,7 @@ use serde::{Deserialize, Serialize};
 use crate::boundary::Cuboid;
 use crate::model::{Boundary, Dynamics, Model};
 use crate::particle::{Mode, Particle, ParticleId, Vector};
+use crate::policy::Never;
 use crate::program::criteria::{Task, continued_without_sleep};
 use crate::program::drive::{Job, Replay};
 use crate::program::error::ProgramError;
@@ -22,7 +23,7 @@ const PATIENCE: f64 = 2.0;
 /// How often one looks where it is, in √(d/g): in between it moves no farther than
 /// a hundredth of MOVED from rest.
 const LOOK_EVERY: f64 = 0.02;
-/// The most events of one continuation: those of a collapse are not followed.
+/// The most events of one continuation.
 const MOST_EVENTS: u64 = 5_000_000;
 /// After so many events it is seen whether a signal has come.
 const SLICE: u64 = 100_000;
@@ -65,11 +66,17 @@ impl<Q: Refit, const D: usize> Task<D> for TakeCensus<'_, Q, D> {
         let mut replay = Replay::new(self.job, self.start, model)?;
         let mut census = Census::default();
         let questions = QUESTIONS.min(self.had.sleeps);
+        let mut last = 0;
         for question in 0..questions {
             // In the middle of each of so many equal parts.
             let which = (2 * question + 1) * self.had.sleeps / (2 * questions);
             if !on_to_sleep(&mut replay, which + 1, self.signals) {
                 break;
+            }
+            // One collision can put two to sleep: only the last of them is asked.
+            let here = replay.simulation.counts().total();
+            if std::mem::replace(&mut last, here) == here {
+                continue;
             }
             if let Some(was_false) = ask(&self.parts, &self.job.scenario, &boundary, &replay)? {
                 census.sleeps += 1;
@@ -117,16 +124,11 @@ fn ask<Q: Refit, M: Model<D>, const D: usize>(
         return Ok(None);
     };
     let simulation = &replay.simulation;
-    let gravity = simulation.model().dynamics().gravity(simulation.time());
     let mut grains = simulation.snapshot();
     let grain = &mut grains[sleeper.index()];
     grain.mode = Mode::Normal;
     grain.velocity = Vector::from_fn(|axis, _| lost[axis]);
-    // What turns goes on from where it is now.
-    let scenario = Scenario {
-        gravity: Gravity::Along(gravity.iter().copied().collect()),
-        ..scenario.clone()
-    };
+    let scenario = from_now::<D>(scenario, boundary, simulation.time());
     let task = WatchIt {
         scenario: &scenario,
         grains,
@@ -134,6 +136,18 @@ fn ask<Q: Refit, M: Model<D>, const D: usize>(
         sleeper,
     };
     Ok(continued_without_sleep(parts, &scenario, task))
+}
+
+/// A scenario in which what turns goes on from where it is at a time. Parts of one's
+/// own are put into it again, so they begin anew.
+fn from_now<const D: usize>(scenario: &Scenario, boundary: &Cuboid<D>, now: Time) -> Scenario {
+    let mut scenario = scenario.clone();
+    if let Some(rotation) = &scenario.rotation {
+        let model = scenario.turning_model(rotation, Never, boundary.clone());
+        let gravity: Vector<D> = model.dynamics.gravity(now);
+        scenario.gravity = Gravity::Along(gravity.iter().copied().collect());
+    }
+    scenario
 }
 
 /// Follows one grain while nobody falls asleep or wakes.
