@@ -7,8 +7,12 @@ use crate::program::sweep::{MOST_RUNS, Variation};
 const HELP: &str = "\
 Examples:
   grainfall compare deposition --policies slow_descent,isostatic_support --seeds 3
-  grainfall compare drum --policies slow_descent,granular_temperature --until 20
+  grainfall compare drum2d --policies slow_descent,granular_temperature \\
+      --set parameters.elastic_speed=1e-2 --until 20
   grainfall compare mine.toml --policies slow_descent,never --until 30
+
+Criteria that watch a grain for a while take up to 25 times the events of the paper's; a
+larger parameters.elastic_speed spares most of them.
 
 Every criterion runs the scenario with every seed, on all cores, each run as
 `grainfall run` would carry it out, in a folder of its own. Then each run is gone
