@@ -8,15 +8,27 @@ use crate::engine::simulation::Simulation;
 use crate::model::{Flight, Model};
 use crate::time::Time;
 
-/// Looks ahead no longer than these, in √(d/g), share a bound each. It covers twice
-/// as long, so that it serves for as long again.
+/// Looks ahead no longer than these, in √(d/g), share a bound each. It covers at least
+/// twice as long, so that it serves for as long again.
 const WINDOWS: [f64; 3] = [0.25, 1.0, 4.0];
+
+/// It covers no more than so many windows, however little happens: the longer it covers
+/// the higher it is.
+const LONGEST: f64 = 16.0;
+
+/// Where less happens in between than so many events for each grain, looking at everybody
+/// is no small matter.
+const FEW: f64 = 0.125;
 
 /// A bound on all speeds, in √(gd), up to an instant.
 #[derive(Clone, Copy, Debug)]
 struct Ceiling {
     speed: f64,
     until: Time,
+    /// How long it covered from the start, in √(d/g).
+    covers: f64,
+    /// How many events there had been then.
+    events: u64,
 }
 
 /// A bound for each of the windows.
@@ -26,12 +38,12 @@ pub(super) struct Speeds([Ceiling; WINDOWS.len()]);
 impl Speeds {
     /// Nothing known yet, at an instant.
     pub(super) fn unknown(now: Time) -> Self {
-        Speeds(
-            [Ceiling {
-                speed: 0.0,
-                until: now,
-            }; WINDOWS.len()],
-        )
+        Speeds(WINDOWS.map(|window| Ceiling {
+            speed: 0.0,
+            until: now,
+            covers: window,
+            events: 0,
+        }))
     }
 }
 
@@ -40,8 +52,8 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
     #[inline]
     pub(super) fn note_speed(&mut self, particle: u32) {
         let flight = self.world.flight(&self.model, particle);
-        for (ceiling, window) in self.speeds.0.iter_mut().zip(WINDOWS) {
-            ceiling.speed = ceiling.speed.max(flight.speed_bound(2.0 * window));
+        for ceiling in &mut self.speeds.0 {
+            ceiling.speed = ceiling.speed.max(flight.speed_bound(ceiling.covers));
         }
     }
 
@@ -51,11 +63,20 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
         let Some(shared) = WINDOWS.iter().position(|window| within <= *window) else {
             return self.fastest(within);
         };
-        if now + within > self.speeds.0[shared].until {
-            let ahead = 2.0 * WINDOWS[shared];
+        let known = self.speeds.0[shared];
+        if now + within > known.until {
+            let events = self.counts.total();
+            let passed = events.saturating_sub(known.events) as f64;
+            let covers = if passed < FEW * self.world.bodies.len() as f64 {
+                f64::min(2.0 * known.covers, LONGEST * WINDOWS[shared])
+            } else {
+                f64::max(0.5 * known.covers, 2.0 * WINDOWS[shared])
+            };
             self.speeds.0[shared] = Ceiling {
-                speed: self.fastest(ahead),
-                until: now + ahead,
+                speed: self.fastest(covers),
+                until: now + covers,
+                covers,
+                events,
             };
         }
         self.speeds.0[shared].speed
