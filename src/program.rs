@@ -21,6 +21,7 @@ mod reference;
 mod reproduce;
 mod resume;
 mod run;
+mod runner;
 mod show;
 mod signals;
 mod sweep;

@@ -9,7 +9,8 @@ use serde::de::DeserializeOwned;
 use crate::boundary::Cuboid;
 use crate::collide::Restitution;
 use crate::model::{Dynamics, Model, Parts, Predictor, StatePolicy};
-use crate::program::criteria::{Added, BuiltIn, Own, Program};
+use crate::program::criteria::{Own, Program};
+use crate::program::runner::{Added, BuiltIn};
 use crate::scenario::{KnownCriterion, KnownParts};
 
 /// Says what the models of the program are made of.

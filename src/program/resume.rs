@@ -5,9 +5,10 @@ use std::io;
 
 use crate::output::{Checkpoint, CheckpointError, RunFolder, StoppedBy, Summary};
 use crate::program::cli::ResumeArguments;
-use crate::program::criteria::{Program, Runner};
+use crate::program::criteria::Program;
 use crate::program::drive::{Attempt, Job, Options};
 use crate::program::error::ProgramError;
+use crate::program::runner::Runner;
 use crate::program::show::say;
 use crate::program::signals::Signals;
 use crate::scenario::{Origin, ScenarioError, read_text};
