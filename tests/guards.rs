@@ -7,11 +7,11 @@ use grainfall::boundary::{Cuboid, Side};
 use grainfall::collide::Restitution;
 use grainfall::dynamics::TurningGround;
 use grainfall::engine::{Guards, Limits, Settings, Simulation, StopReason};
-use grainfall::model::{Dynamics, Model, Parts};
+use grainfall::model::{Dynamics, Model, Parts, StatePolicy};
 use grainfall::policy::{Never, SlowDescent};
 use grainfall::predict::Turning;
 use grainfall::setup::Sizes;
-use grainfall::{Particle, ParticleId, SetupError, Time, Vector};
+use grainfall::{Mode, Particle, ParticleId, SetupError, Time, Vector};
 
 fn with(guards: Guards) -> Settings {
     Settings {
@@ -268,4 +268,78 @@ fn a_grain_in_a_narrow_wedge_is_caught() {
     };
     assert_eq!(simulation.run(&limits, &mut ()), StopReason::AllFrozen);
     assert!(simulation.max_overlap() < 1.0e-11);
+}
+
+/// A grain that has slid into the end of a groove whose three sides are planes of one
+/// line to 10⁻⁵, and would have to press with 10⁴ times its momentum to stop there; as
+/// found in a deposit of 10⁶.
+fn a_grain_in_a_groove<P: StatePolicy<3>>(
+    policy: P,
+    guards: Guards,
+    limits: &Limits,
+) -> (StopReason, Time, Particle<3>) {
+    let grains = vec![
+        Particle::new(
+            Vector::<3>::zeros(),
+            Vector::<3>::new(
+                -0.07310474661300562,
+                0.13297454901063793,
+                0.03423281841334729,
+            ),
+        ),
+        Particle::fixed(Vector::<3>::new(
+            -0.640361889291782,
+            -0.1573289681812362,
+            -0.7517873678864824,
+        )),
+        Particle::fixed(Vector::<3>::new(
+            0.8819046544988964,
+            0.4600206473080206,
+            0.10307853522188637,
+        )),
+        Particle::fixed(Vector::<3>::new(
+            -0.40101730546280123,
+            -0.43222774401996844,
+            0.8076907192847784,
+        )),
+    ];
+    let model = heavy(rule(1.0e-3), policy, [Side::Open; 3]);
+    let mut simulation = Simulation::with_settings(model, grains, with(guards)).unwrap();
+    let stop = simulation.run(limits, &mut ());
+    assert!(simulation.max_overlap() < 1.0e-11);
+    println!(
+        "{:?} {:?}",
+        simulation.counts(),
+        simulation.particle(ParticleId(0))
+    );
+    let grain = simulation.particle(ParticleId(0));
+    (stop, simulation.time(), grain)
+}
+
+#[test]
+fn a_grain_in_a_narrow_groove_slides_out_again() {
+    let guards = Guards {
+        exit_speed: 1.0e-4,
+        ..Guards::default()
+    };
+    let until = Limits::until(Time::from_units(1.0));
+    let (stop, _, grain) = a_grain_in_a_groove(Never, guards, &until);
+    assert_eq!((stop, grain.mode), (StopReason::Time, Mode::Normal));
+    assert!(grain.position.norm() > 0.1);
+}
+
+#[test]
+fn a_cascade_without_remedy_ends_in_sleep() {
+    let guards = Guards {
+        // Never due.
+        cascade: Some(u32::MAX),
+        collapse: Some(1000),
+        ..Guards::default()
+    };
+    let limits = Limits {
+        all_frozen: true,
+        ..Limits::events(2000)
+    };
+    let (stop, time, _) = a_grain_in_a_groove(SlowDescent::default(), guards, &limits);
+    assert_eq!((stop, time), (StopReason::AllFrozen, Time::ZERO));
 }

@@ -31,6 +31,15 @@ const HELD: f64 = 1.0e-3;
 /// A cascade that goes on after the guard has acted so often is looked at more closely.
 const STUBBORN: u32 = 256;
 
+/// Contacts that all but contradict each other, as at a groove whose sides open by 10⁻⁵,
+/// are solved for in two steps: after the first so much may remain of how fast surfaces
+/// close, over the fastest grain's speed.
+const NARROW: f64 = 1.0e-6;
+
+/// A grain that touches static ones falls asleep after this part of the collisions that
+/// count as collapse: whatever goes on there has no end that could be told.
+const LAST_RESORT: u32 = 2;
+
 /// A cluster of grains that touch is not followed beyond this many.
 const MOST_MEMBERS: usize = 12;
 
@@ -43,6 +52,18 @@ struct Cluster<const D: usize> {
 }
 
 impl<const D: usize> Cluster<D> {
+    /// The velocities nearest to `before` with which nobody comes nearer, and velocities
+    /// from which others can be found as well: those before, or on the way.
+    fn resting(&self, before: &[Vector<D>]) -> Option<(Vec<Vector<D>>, Vec<Vector<D>>)> {
+        if let Some(resting) = project(before, &self.touches, 0.0) {
+            return Some((before.to_vec(), resting));
+        }
+        let fastest = before.iter().map(|v| v.norm_squared()).fold(0.0, f64::max);
+        let nearly = project_within(before, &self.touches, 0.0, NARROW * fastest.sqrt())?;
+        let resting = project(&nearly, &self.touches, 0.0)?;
+        Some((nearly, resting))
+    }
+
     /// The velocities nearest to `before` with which nobody comes nearer and the first
     /// member leaves such of its contacts at this speed, in √(gd); `None` if there are
     /// none.
@@ -96,7 +117,9 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
             self.collapse = Some(self.name_collapse(particle, run));
         }
         let sleeps = self.model.state_policy().sleeps();
-        if sleeps && guards.cascade.is_some() && self.is_caught(particle) {
+        let caught =
+            |this: &mut Self| this.is_caught(particle) || this.is_past_remedy(particle, run);
+        if sleeps && guards.cascade.is_some() && caught(self) {
             self.counts.guard += 1;
             return Relief {
                 caught: true,
@@ -117,7 +140,7 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
             .iter()
             .map(|&member| self.world.particle_now(&self.model, member).velocity)
             .collect();
-        let Some(resting) = project(&before, &cluster.touches, 0.0) else {
+        let Some((nearly, resting)) = cluster.resting(&before) else {
             return Relief::none();
         };
         // In a narrow cone a small exit speed along the normals is a large one
@@ -136,7 +159,7 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
                 Some(fast)
             }
         };
-        let mut leaving = leave(&|exit| project(&before, &cluster.touches, exit));
+        let mut leaving = leave(&|exit| project(&nearly, &cluster.touches, exit));
         // Where contacts work against each other some grain cannot leave.
         let caught = sleeps && leaving.is_none() && {
             let place = self.world.particle_now(&self.model, particle).position;
@@ -150,8 +173,8 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
             // Somebody else cannot leave. At rest within rounding, this one would go on
             // colliding with what it slides along, so it leaves alone: all its
             // contacts, or the static ones.
-            leaving = leave(&|exit| cluster.left_alone(&before, exit, |_| true))
-                .or_else(|| leave(&|exit| cluster.left_alone(&before, exit, Touch::is_on_static)));
+            leaving = leave(&|exit| cluster.left_alone(&nearly, exit, |_| true))
+                .or_else(|| leave(&|exit| cluster.left_alone(&nearly, exit, Touch::is_on_static)));
         }
         let after = leaving.unwrap_or(resting);
         let mut disturbed = Vec::new();
@@ -210,6 +233,17 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
         let held = |fall: Vec<Vector<D>>| fall[0].norm_squared().sqrt() < HELD;
         let way = |fall: Vector<D>| project_within(&[fall], &bars, 0.0, 0.1 * HELD);
         hurried && strength > 0.0 && way(gravity / strength).is_some_and(held)
+    }
+
+    /// Whether a grain has gone on colliding at one instant, on static ones, through all
+    /// that the guard has done.
+    fn is_past_remedy(&self, particle: u32, run: u32) -> bool {
+        let last = |limit: u32| run >= limit.div_ceil(LAST_RESORT);
+        self.settings.guards.collapse.is_some_and(last) && {
+            let mut leans = false;
+            self.for_each_static(particle, TOUCHING, |_, _| leans = true);
+            leans
+        }
     }
 
     fn name_collapse(&self, particle: u32, run: u32) -> Collapse {
