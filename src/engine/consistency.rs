@@ -101,7 +101,7 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
                 return Err(format!("{noted} grains are {}, not {found}", mode.name()));
             }
         }
-        self.queue.check_all()?;
+        self.queue.check_numbers()?;
         let scale = self.listed_scale();
         let radius_of = |other: u32| scale * self.world.bodies[other as usize].radius;
         for particle in 0..count as u32 {
@@ -163,13 +163,7 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
             }
             _ => {}
         }
-        let (key, filed) = (slot.key(particle), self.queue.key(particle));
-        if key != filed && (key.time.is_finite() || filed.time.is_finite()) {
-            return Err(format!(
-                "grain {particle} is filed as {filed:?}, not {key:?}"
-            ));
-        }
-        self.queue.check_entry(particle)?;
+        self.queue.check_entry(particle, slot.key(particle))?;
         self.leaning.check(particle, body.mode == Mode::Frozen)?;
         let position = flight.position(now - body.since);
         self.world.check_aloft(particle)?;

@@ -105,7 +105,9 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
     /// whose key is smaller.
     fn next_event(&mut self) -> Option<(Key, Source)> {
         let policy = self.alarms.peek().map(|Reverse(alarm)| alarm.key);
-        match (self.queue.peek(), policy) {
+        let slots = &self.slots;
+        let known = |particle: u32| slots[particle as usize].key(particle);
+        match (self.queue.peek(known), policy) {
             (None, None) => None,
             (Some((particle, key)), None) => Some((key, Source::Particle(particle))),
             (None, Some(key)) => Some((key, Source::Policy)),

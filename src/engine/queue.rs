@@ -38,18 +38,53 @@ const IN_HEAP: u32 = 1 << 31;
 /// Entries beyond the last slot of the calendar.
 const BEYOND: usize = 0;
 
+/// An entry in the heap.
+#[derive(Clone, Copy, Debug)]
+struct Entry {
+    key: Key,
+    particle: u32,
+}
+
+/// Where the entry of a grain lies.
+#[derive(Clone, Copy, Debug)]
+struct Berth {
+    /// Position in the heap, or the list (slot + 1, or `BEYOND`) it is filed in.
+    place: u32,
+    /// Neighbours in that list.
+    next: u32,
+    previous: u32,
+}
+
+impl Berth {
+    const NONE: Berth = Berth {
+        place: NOWHERE,
+        next: NOWHERE,
+        previous: NOWHERE,
+    };
+
+    #[inline]
+    fn in_heap(self) -> Option<usize> {
+        (self.place != NOWHERE && self.place & IN_HEAP != 0)
+            .then_some((self.place & !IN_HEAP) as usize)
+    }
+
+    /// The list that holds the entry, if one does.
+    #[inline]
+    fn list(self) -> Option<usize> {
+        (self.place & IN_HEAP == 0).then_some(self.place as usize)
+    }
+}
+
 /// One entry for each of a set of grains, named by index.
+///
+/// What an entry says is kept in the heap alone. For those that are only filed, who
+/// asks for the earliest says it again: it must be what it was when they were set.
 #[derive(Clone, Debug)]
 pub(super) struct EventQueue {
-    keys: Vec<Key>,
-    /// Position in the heap, or the list (slot + 1, or `BEYOND`) it is filed in.
-    places: Vec<u32>,
-    /// Neighbours in the list an entry is filed in.
-    next: Vec<u32>,
-    previous: Vec<u32>,
+    berths: Vec<Berth>,
     /// First entries of the lists: `BEYOND`, then one for each slot.
     heads: Vec<u32>,
-    heap: Vec<u32>,
+    heap: Vec<Entry>,
     /// Entries filed in slots.
     filed: usize,
     /// Start of slot 0 of the calendar.
@@ -68,10 +103,7 @@ impl EventQueue {
     pub(super) fn new(capacity: usize, start: Time) -> Self {
         let slots = (2 * capacity).next_power_of_two().clamp(256, 1 << 20);
         EventQueue {
-            keys: Vec::with_capacity(capacity),
-            places: Vec::with_capacity(capacity),
-            next: Vec::with_capacity(capacity),
-            previous: Vec::with_capacity(capacity),
+            berths: Vec::with_capacity(capacity),
             heads: vec![NOWHERE; slots + 1],
             heap: Vec::new(),
             filed: 0,
@@ -85,15 +117,7 @@ impl EventQueue {
 
     /// Makes room for one more grain, without an entry.
     pub(super) fn push_empty(&mut self) {
-        self.keys.push(Key {
-            time: Time::NEVER,
-            rank: Rank::Transfer,
-            low: 0,
-            high: 0,
-        });
-        self.places.push(NOWHERE);
-        self.next.push(NOWHERE);
-        self.previous.push(NOWHERE);
+        self.berths.push(Berth::NONE);
     }
 
     /// The slot of the calendar that is being served.
@@ -109,62 +133,62 @@ impl EventQueue {
         let list = (slot & (self.slots() - 1)) as usize + 1;
         let known = |particle: u32| (particle != NOWHERE).then_some(particle);
         let first = if ahead { known(self.heads[list]) } else { None };
-        std::iter::successors(first, move |particle| known(self.next[*particle as usize]))
+        let next = move |particle: &u32| known(self.berths[*particle as usize].next);
+        std::iter::successors(first, next)
     }
 
-    /// Reads an entry, to have it at hand.
+    /// Reads where an entry lies, to have it at hand.
     #[inline]
     pub(super) fn touch(&self, particle: u32) {
-        black_box(self.keys[particle as usize].low);
-        black_box(self.places[particle as usize]);
+        black_box(self.berths[particle as usize].place);
     }
 
     /// Takes back the last grain that room was made for.
     pub(super) fn forget_last(&mut self) {
-        if let Some(last) = self.keys.len().checked_sub(1) {
+        if let Some(last) = self.berths.len().checked_sub(1) {
             self.take_out(last as u32);
-            self.keys.pop();
-            self.places.pop();
-            self.next.pop();
-            self.previous.pop();
+            self.berths.pop();
         }
     }
 
-    /// The earliest entry.
-    pub(super) fn peek(&mut self) -> Option<(u32, Key)> {
+    /// The earliest entry, where `key` says again what was set.
+    #[inline]
+    pub(super) fn peek(&mut self, key: impl Fn(u32) -> Key) -> Option<(u32, Key)> {
         while self.heap.is_empty() {
-            if !self.turn_page() {
+            if !self.turn_page(&key) {
                 return None;
             }
         }
-        let first = self.heap[0];
-        Some((first, self.keys[first as usize]))
+        let Entry { key, particle } = self.heap[0];
+        Some((particle, key))
     }
 
     /// Gives a grain another entry, or none if `key.time` is never.
     pub(super) fn set(&mut self, particle: u32, key: Key) {
-        let index = particle as usize;
-        if self.keys[index] == key {
+        let berth = self.berths[particle as usize];
+        if !key.time.is_finite() {
+            self.take_out(particle);
             return;
         }
-        let place = self.places[index];
         let slot = self.slot_of(key.time);
-        if place != NOWHERE && place & IN_HEAP != 0 && slot <= self.current {
-            // The common case: stays in the heap.
-            let earlier = key < self.keys[index];
-            self.keys[index] = key;
-            let position = (place & !IN_HEAP) as usize;
-            if earlier {
-                self.sift_up(position);
-            } else {
-                self.served += u64::from(position == 0);
-                self.sift_down(position);
+        if let Some(position) = berth.in_heap() {
+            if slot <= self.current {
+                // The common case: stays in the heap.
+                let entry = Entry { key, particle };
+                let old = self.heap[position].key;
+                if key < old {
+                    self.sift_up(position, entry);
+                } else if key != old {
+                    self.served += u64::from(position == 0);
+                    self.sift_down(position, entry);
+                }
+                return;
             }
+        } else if slot > self.current && berth.list() == Some(self.list_of(slot)) {
             return;
         }
         self.take_out(particle);
-        self.keys[index] = key;
-        self.file(particle);
+        self.file(particle, slot, key);
     }
 
     /// How many slots there are: a power of two.
@@ -177,74 +201,65 @@ impl EventQueue {
         ((time - self.origin) * self.per_time) as i64
     }
 
-    fn file(&mut self, particle: u32) {
-        let index = particle as usize;
-        let time = self.keys[index].time;
-        if !time.is_finite() {
-            self.places[index] = NOWHERE;
-            return;
-        }
-        let slot = self.slot_of(time);
-        if slot <= self.current {
-            self.heap.push(particle);
-            self.sift_up(self.heap.len() - 1);
-            return;
-        }
-        let list = if slot - self.current < self.slots() {
-            self.filed += 1;
+    /// The list for a slot that is still to come.
+    fn list_of(&self, slot: i64) -> usize {
+        if slot - self.current < self.slots() {
             (slot & (self.slots() - 1)) as usize + 1
         } else {
             BEYOND
-        };
+        }
+    }
+
+    fn file(&mut self, particle: u32, slot: i64, key: Key) {
+        if slot <= self.current {
+            self.push(Entry { key, particle });
+            return;
+        }
+        let list = self.list_of(slot);
+        self.filed += usize::from(list != BEYOND);
         let head = self.heads[list];
-        self.next[index] = head;
-        self.previous[index] = NOWHERE;
+        self.berths[particle as usize] = Berth {
+            place: list as u32,
+            next: head,
+            previous: NOWHERE,
+        };
         if head != NOWHERE {
-            self.previous[head as usize] = particle;
+            self.berths[head as usize].previous = particle;
         }
         self.heads[list] = particle;
-        self.places[index] = list as u32;
     }
 
     fn take_out(&mut self, particle: u32) {
-        let index = particle as usize;
-        let place = self.places[index];
-        if place == NOWHERE {
-            return;
-        }
-        self.places[index] = NOWHERE;
-        if place & IN_HEAP != 0 {
-            let position = (place & !IN_HEAP) as usize;
+        let berth = std::mem::replace(&mut self.berths[particle as usize], Berth::NONE);
+        if let Some(position) = berth.in_heap() {
             self.served += u64::from(position == 0);
-            let last = self.heap.len() - 1;
             self.heap.swap_remove(position);
-            if position < last {
-                self.places[self.heap[position] as usize] = position as u32 | IN_HEAP;
-                self.sift_up(position);
-                self.sift_down(position);
+            if let Some(&moved) = self.heap.get(position) {
+                self.sift_up(position, moved);
+                let position = self.berths[moved.particle as usize].in_heap();
+                self.sift_down(position.unwrap_or_default(), moved);
             }
-            return;
+        } else if let Some(list) = berth.list() {
+            if berth.next != NOWHERE {
+                self.berths[berth.next as usize].previous = berth.previous;
+            }
+            if berth.previous == NOWHERE {
+                self.heads[list] = berth.next;
+            } else {
+                self.berths[berth.previous as usize].next = berth.next;
+            }
+            self.filed -= usize::from(list != BEYOND);
         }
-        let (next, previous) = (self.next[index], self.previous[index]);
-        if next != NOWHERE {
-            self.previous[next as usize] = previous;
-        }
-        if previous == NOWHERE {
-            self.heads[place as usize] = next;
-        } else {
-            self.next[previous as usize] = next;
-        }
-        self.filed -= usize::from(place as usize != BEYOND);
     }
 
     /// Moves the next slot into the empty heap; false if nothing is left.
-    fn turn_page(&mut self) -> bool {
+    fn turn_page(&mut self, key: &impl Fn(u32) -> Key) -> bool {
         if self.filed == 0 {
             if self.heads[BEYOND] == NOWHERE {
                 return false;
             }
             // A gap: start a new calendar at the earliest entry.
-            self.rebuild(self.width * 2.0);
+            self.rebuild(self.width * 2.0, key);
             return true;
         }
         self.current += 1;
@@ -258,77 +273,89 @@ impl EventQueue {
             } else {
                 self.width
             };
-            self.rebuild(width);
+            self.rebuild(width, key);
             return true;
         }
         let list = (self.current & (self.slots() - 1)) as usize + 1;
         let mut particle = std::mem::replace(&mut self.heads[list], NOWHERE);
         while particle != NOWHERE {
-            let following = self.next[particle as usize];
+            let following = self.berths[particle as usize].next;
             self.filed -= 1;
-            self.heap.push(particle);
-            self.sift_up(self.heap.len() - 1);
+            self.push(Entry {
+                key: key(particle),
+                particle,
+            });
             particle = following;
         }
         true
     }
 
     /// Files everything anew, from the earliest entry on.
-    fn rebuild(&mut self, width: f64) {
-        let start = self.keys.iter().map(|key| key.time).min();
-        self.origin = start.unwrap_or(self.origin);
+    fn rebuild(&mut self, width: f64, key: &impl Fn(u32) -> Key) {
+        let filed = (0..self.berths.len() as u32)
+            .filter(|&particle| self.berths[particle as usize].place != NOWHERE);
+        if let Some(start) = filed.map(|particle| key(particle).time).min() {
+            self.origin = start;
+        }
         self.width = width.clamp(1.0e-14, 1.0e6);
         self.per_time = 1.0 / self.width;
         self.current = 0;
         self.filed = 0;
         self.heap.clear();
         self.heads.fill(NOWHERE);
-        for particle in 0..self.keys.len() as u32 {
-            self.file(particle);
+        for particle in 0..self.berths.len() as u32 {
+            if self.berths[particle as usize].place != NOWHERE {
+                let key = key(particle);
+                self.file(particle, self.slot_of(key.time), key);
+            }
         }
     }
 
-    fn sift_up(&mut self, mut position: usize) {
-        let particle = self.heap[position];
-        let key = self.keys[particle as usize];
+    fn push(&mut self, entry: Entry) {
+        self.heap.push(entry);
+        self.sift_up(self.heap.len() - 1, entry);
+    }
+
+    /// Puts an entry into the heap at a position, or above.
+    fn sift_up(&mut self, mut position: usize, entry: Entry) {
         while position > 0 {
             let parent = (position - 1) / 2;
             let above = self.heap[parent];
-            if self.keys[above as usize] <= key {
+            if above.key <= entry.key {
                 break;
             }
-            self.heap[position] = above;
-            self.places[above as usize] = position as u32 | IN_HEAP;
+            self.put(position, above);
             position = parent;
         }
-        self.heap[position] = particle;
-        self.places[particle as usize] = position as u32 | IN_HEAP;
+        self.put(position, entry);
     }
 
-    fn sift_down(&mut self, mut position: usize) {
-        let particle = self.heap[position];
-        let key = self.keys[particle as usize];
+    /// Puts an entry into the heap at a position, or below.
+    fn sift_down(&mut self, mut position: usize, entry: Entry) {
         loop {
-            let mut child = 2 * position + 1;
-            if child >= self.heap.len() {
+            let child = 2 * position + 1;
+            let Some(mut below) = self.heap.get(child) else {
                 break;
-            }
-            let right = child + 1;
-            if right < self.heap.len()
-                && self.keys[self.heap[right] as usize] < self.keys[self.heap[child] as usize]
+            };
+            let mut lower = child;
+            if let Some(right) = self.heap.get(child + 1)
+                && right.key < below.key
             {
-                child = right;
+                (below, lower) = (right, child + 1);
             }
-            let below = self.heap[child];
-            if key <= self.keys[below as usize] {
+            if entry.key <= below.key {
                 break;
             }
-            self.heap[position] = below;
-            self.places[below as usize] = position as u32 | IN_HEAP;
-            position = child;
+            self.put(position, *below);
+            position = lower;
         }
-        self.heap[position] = particle;
-        self.places[particle as usize] = position as u32 | IN_HEAP;
+        self.put(position, entry);
+    }
+
+    #[inline]
+    fn put(&mut self, position: usize, entry: Entry) {
+        self.heap[position] = entry;
+        self.berths[entry.particle as usize].place = position as u32 | IN_HEAP;
     }
 }
 
@@ -358,11 +385,12 @@ mod tests {
                 queue.push_empty();
             }
             let mut sorted = std::collections::BTreeMap::new();
+            let mut keys = [key(f64::INFINITY, 0); 40];
             let mut clock = 0.0;
             for (particle, exponent, action) in waits {
                 if action == 0 {
                     let expected = sorted.iter().next().map(|(key, particle)| (*particle, *key));
-                    prop_assert_eq!(queue.peek(), expected);
+                    prop_assert_eq!(queue.peek(|particle| keys[particle as usize]), expected);
                     if let Some((first, first_key)) = expected {
                         clock = f64::max(clock, first_key.time.units());
                         queue.set(first, Key { time: Time::NEVER, ..first_key });
@@ -373,13 +401,14 @@ mod tests {
                 let new = key(clock + libm::exp10(exponent), particle);
                 sorted.retain(|_, p| *p != particle);
                 sorted.insert(new, particle);
+                keys[particle as usize] = new;
                 queue.set(particle, new);
             }
             while let Some((key, particle)) = sorted.pop_first() {
-                prop_assert_eq!(queue.peek(), Some((particle, key)));
+                prop_assert_eq!(queue.peek(|particle| keys[particle as usize]), Some((particle, key)));
                 queue.set(particle, Key { time: Time::NEVER, ..key });
             }
-            prop_assert_eq!(queue.peek(), None);
+            prop_assert_eq!(queue.peek(|particle| keys[particle as usize]), None);
         }
     }
 
@@ -395,12 +424,17 @@ mod tests {
             low,
             high,
         };
-        queue.set(0, at(Rank::Transfer, 0, 0));
-        queue.set(3, at(Rank::Contact, 2, 3));
-        queue.set(2, at(Rank::Contact, 1, 2));
-        queue.set(1, at(Rank::Sleep, 1, 1));
+        let keys = [
+            at(Rank::Transfer, 0, 0),
+            at(Rank::Sleep, 1, 1),
+            at(Rank::Contact, 1, 2),
+            at(Rank::Contact, 2, 3),
+        ];
+        for particle in [0, 3, 2, 1] {
+            queue.set(particle, keys[particle as usize]);
+        }
         let mut order = Vec::new();
-        while let Some((particle, key)) = queue.peek() {
+        while let Some((particle, key)) = queue.peek(|particle| keys[particle as usize]) {
             order.push(particle);
             queue.set(
                 particle,

@@ -104,7 +104,8 @@ impl<C> AtRest<C> {
 pub struct RestMemory<H, const D: usize> {
     history: H,
     asleep: Option<Asleep<D>>,
-    supports: Supports,
+    /// With the self-check alone.
+    supports: Option<Box<Supports>>,
 }
 
 impl<const D: usize, C: RestCondition<D>> StatePolicy<D> for AtRest<C> {
@@ -186,7 +187,8 @@ impl<const D: usize, C: RestCondition<D>> StatePolicy<D> for AtRest<C> {
             && near.particle(id).mode == Mode::Frozen
         {
             let walls = self.wall_supports;
-            memory.supports.start(check, walls, id, near, commands);
+            let supports = memory.supports.get_or_insert_default();
+            supports.start(check, walls, id, near, commands);
         }
     }
 
@@ -204,7 +206,8 @@ impl<const D: usize, C: RestCondition<D>> StatePolicy<D> for AtRest<C> {
         });
         if let Some(check) = &self.self_check {
             let walls = self.wall_supports;
-            memory.supports.begin(check, walls, id, near, commands);
+            let supports = memory.supports.get_or_insert_default();
+            supports.begin(check, walls, id, near, commands);
         }
     }
 
@@ -217,7 +220,9 @@ impl<const D: usize, C: RestCondition<D>> StatePolicy<D> for AtRest<C> {
         _commands: &mut Commands<CheckDue>,
     ) {
         memory.asleep = None;
-        memory.supports.forget();
+        if let Some(supports) = &mut memory.supports {
+            supports.forget();
+        }
     }
 
     fn on_event<S: Surroundings<D>>(
@@ -228,15 +233,15 @@ impl<const D: usize, C: RestCondition<D>> StatePolicy<D> for AtRest<C> {
         memory: &mut Self::Memory,
         commands: &mut Commands<CheckDue>,
     ) -> Response<D> {
-        let Some(check) = &self.self_check else {
+        let (Some(check), Some(supports)) = (&self.self_check, &memory.supports) else {
             return Response::Ignore;
         };
         let grain = near.particle(id);
-        if grain.mode != Mode::Frozen || !memory.supports.is_current(event) {
+        if grain.mode != Mode::Frozen || !supports.is_current(event) {
             return Response::Ignore;
         }
         let walls = self.wall_supports;
-        match memory.supports.go_on(check, walls, id, near, commands) {
+        match supports.go_on(check, walls, id, near, commands) {
             Ok(()) => Response::Keep,
             Err(reason) => {
                 Response::Wake(self.given_back(memory, near.time(), grain.velocity), reason)
@@ -253,7 +258,10 @@ impl<const D: usize, C: RestCondition<D>> StatePolicy<D> for AtRest<C> {
         _commands: &mut Commands<CheckDue>,
     ) -> Response<D> {
         let (check, walls) = (self.self_check.as_ref(), self.wall_supports);
-        memory.supports.answer(check, walls, id, near, |grain| {
+        let Some(supports) = &memory.supports else {
+            return Response::Ignore;
+        };
+        supports.answer(check, walls, id, near, |grain| {
             self.given_back(memory, near.time(), grain.velocity)
         })
     }

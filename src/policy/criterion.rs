@@ -49,10 +49,11 @@ enum Inner<const D: usize> {
     #[default]
     Nothing,
     Descent(Remembered<D>),
-    Displacement(RestMemory<HistoryOf<DisplacementWindow, D>, D>),
-    Variance(RestMemory<HistoryOf<VelocityVariance, D>, D>),
-    Temperature(RestMemory<HistoryOf<GranularTemperature, D>, D>),
-    Dynamo(RestMemory<HistoryOf<DynamoSleep, D>, D>),
+    // These are longer, and none of the others is to take as much room.
+    Displacement(Box<RestMemory<HistoryOf<DisplacementWindow, D>, D>>),
+    Variance(Box<RestMemory<HistoryOf<VelocityVariance, D>, D>>),
+    Temperature(Box<RestMemory<HistoryOf<GranularTemperature, D>, D>>),
+    Dynamo(Box<RestMemory<HistoryOf<DynamoSleep, D>, D>>),
 }
 
 /// A kind of memory among the kinds that there are.
@@ -63,10 +64,11 @@ trait Kind<const D: usize>: Default {
 }
 
 macro_rules! kinds {
-    ($($kind:ident: $memory:ty,)*) => {
+    ($($kind:ident: $memory:ty, $wrapped:ident => $wrap:expr;)*) => {
         $(impl<const D: usize> Kind<D> for $memory {
             fn wrap(self) -> Inner<D> {
-                Inner::$kind(self)
+                let $wrapped = self;
+                Inner::$kind($wrap)
             }
             fn of(inner: &Inner<D>) -> Option<&Self> {
                 match inner {
@@ -85,11 +87,11 @@ macro_rules! kinds {
 }
 
 kinds! {
-    Descent: Remembered<D>,
-    Displacement: RestMemory<HistoryOf<DisplacementWindow, D>, D>,
-    Variance: RestMemory<HistoryOf<VelocityVariance, D>, D>,
-    Temperature: RestMemory<HistoryOf<GranularTemperature, D>, D>,
-    Dynamo: RestMemory<HistoryOf<DynamoSleep, D>, D>,
+    Descent: Remembered<D>, memory => memory;
+    Displacement: RestMemory<HistoryOf<DisplacementWindow, D>, D>, memory => Box::new(memory);
+    Variance: RestMemory<HistoryOf<VelocityVariance, D>, D>, memory => Box::new(memory);
+    Temperature: RestMemory<HistoryOf<GranularTemperature, D>, D>, memory => Box::new(memory);
+    Dynamo: RestMemory<HistoryOf<DynamoSleep, D>, D>, memory => Box::new(memory);
 }
 
 impl<const D: usize> CriterionMemory<D> {

@@ -110,7 +110,8 @@ impl SlowDescent {
         mass: f64,
     ) -> Waking<D> {
         let still_stored = memory
-            .asleep
+            .rest
+            .asleep()
             .filter(|asleep| now - asleep.since < self.store_time(gravity.norm_squared().sqrt()));
         match (still_stored, self.energy_store) {
             (Some(asleep), EnergyStore::VelocityBefore) => {
@@ -147,10 +148,29 @@ pub struct Remembered<const D: usize> {
     /// Speed at the last collision that counts, relative to the ground, in
     /// √(gd).
     previous_speed: Option<f64>,
-    /// Velocity after the collision that decided to fall asleep.
-    deciding: Option<Vector<D>>,
-    asleep: Option<Asleep<D>>,
-    supports: Supports,
+    rest: Rest<D>,
+    /// With the self-check alone.
+    supports: Option<Box<Supports>>,
+}
+
+/// How far a grain is from being asleep.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(bound = "")]
+enum Rest<const D: usize> {
+    #[default]
+    Awake,
+    /// A collision has decided it; its velocity after that, relative to the ground.
+    Decided(Vector<D>),
+    Asleep(Asleep<D>),
+}
+
+impl<const D: usize> Rest<D> {
+    fn asleep(&self) -> Option<&Asleep<D>> {
+        match self {
+            Rest::Asleep(asleep) => Some(asleep),
+            Rest::Awake | Rest::Decided(_) => None,
+        }
+    }
 }
 
 impl<const D: usize> StatePolicy<D> for SlowDescent {
@@ -199,7 +219,7 @@ impl<const D: usize> StatePolicy<D> for SlowDescent {
         let on_support = self.is_on_support(impact);
         let previous = memory.previous_speed;
         // A decision that this collision has cancelled.
-        memory.deciding = None;
+        memory.rest = Rest::Awake;
         if on_support || self.comparison == Comparison::AnyCollision {
             memory.previous_speed = Some(speed);
         }
@@ -227,7 +247,7 @@ impl<const D: usize> StatePolicy<D> for SlowDescent {
                 return SleepDecision::Stay(slower);
             }
         }
-        memory.deciding = Some(leaving);
+        memory.rest = Rest::Decided(leaving);
         SleepDecision::Sleep(self.place, slow)
     }
 
@@ -266,7 +286,7 @@ impl<const D: usize> StatePolicy<D> for SlowDescent {
         {
             return Err(format!("it remembers no speed: {memory:?}"));
         }
-        match &memory.asleep {
+        match memory.rest.asleep() {
             Some(asleep) => asleep.check(near.particle(id).mode, near.time()),
             None => Ok(()),
         }
@@ -283,7 +303,8 @@ impl<const D: usize> StatePolicy<D> for SlowDescent {
             && near.particle(id).mode == Mode::Frozen
         {
             let walls = self.wall_supports;
-            memory.supports.start(check, walls, id, near, commands);
+            let supports = memory.supports.get_or_insert_default();
+            supports.start(check, walls, id, near, commands);
         }
     }
 
@@ -294,11 +315,11 @@ impl<const D: usize> StatePolicy<D> for SlowDescent {
         memory: &mut Remembered<D>,
         commands: &mut Commands<CheckDue>,
     ) {
-        let velocity = match (self.store_at, memory.deciding) {
-            (StoreAt::Deciding, Some(velocity)) => velocity,
+        let velocity = match (self.store_at, memory.rest) {
+            (StoreAt::Deciding, Rest::Decided(velocity)) => velocity,
             _ => near.particle(id).velocity - near.ground_velocity(id),
         };
-        memory.asleep = Some(Asleep {
+        memory.rest = Rest::Asleep(Asleep {
             velocity,
             since: near.time(),
         });
@@ -307,7 +328,8 @@ impl<const D: usize> StatePolicy<D> for SlowDescent {
         }
         if let Some(check) = &self.self_check {
             let walls = self.wall_supports;
-            memory.supports.begin(check, walls, id, near, commands);
+            let supports = memory.supports.get_or_insert_default();
+            supports.begin(check, walls, id, near, commands);
         }
     }
 
@@ -319,8 +341,10 @@ impl<const D: usize> StatePolicy<D> for SlowDescent {
         memory: &mut Remembered<D>,
         _commands: &mut Commands<CheckDue>,
     ) {
-        memory.asleep = None;
-        memory.supports.forget();
+        memory.rest = Rest::Awake;
+        if let Some(supports) = &mut memory.supports {
+            supports.forget();
+        }
         match cause {
             // Its first contact cannot put it back to sleep.
             WakeCause::Event => memory.previous_speed = Some(0.0),
@@ -345,15 +369,15 @@ impl<const D: usize> StatePolicy<D> for SlowDescent {
         memory: &mut Remembered<D>,
         commands: &mut Commands<CheckDue>,
     ) -> Response<D> {
-        let Some(check) = &self.self_check else {
+        let (Some(check), Some(supports)) = (&self.self_check, &memory.supports) else {
             return Response::Ignore;
         };
         let grain = near.particle(id);
-        if grain.mode != Mode::Frozen || !memory.supports.is_current(event) {
+        if grain.mode != Mode::Frozen || !supports.is_current(event) {
             return Response::Ignore;
         }
         let walls = self.wall_supports;
-        match memory.supports.go_on(check, walls, id, near, commands) {
+        match supports.go_on(check, walls, id, near, commands) {
             Ok(()) => Response::Keep,
             Err(reason) => {
                 let gravity = near.gravity();
@@ -373,7 +397,10 @@ impl<const D: usize> StatePolicy<D> for SlowDescent {
         _commands: &mut Commands<CheckDue>,
     ) -> Response<D> {
         let (check, walls) = (self.self_check.as_ref(), self.wall_supports);
-        memory.supports.answer(check, walls, id, near, |grain| {
+        let Some(supports) = &memory.supports else {
+            return Response::Ignore;
+        };
+        supports.answer(check, walls, id, near, |grain| {
             let (now, gravity) = (near.time(), near.gravity());
             self.given_back(memory, now, &gravity, grain.velocity, grain.mass)
         })
