@@ -24,37 +24,43 @@ pub(in crate::engine) struct Bed<const D: usize> {
 }
 
 impl<const D: usize> Bed<D> {
+    const EMPTY: Self = Bed {
+        resting: Vec::new(),
+        still: Vec::new(),
+        movers: Vec::new(),
+    };
+
+    /// Makes it anew, in the room it has.
     fn make(
+        &mut self,
         list: &[Link<D>],
         place: &Vector<D>,
         radius: f64,
         periods: &[f64; D],
         cells: &Cells<D>,
         bodies: &[Body<D>],
-    ) -> Self {
-        let mut bed = Bed {
-            resting: Vec::new(),
-            still: Vec::new(),
-            movers: Vec::new(),
-        };
+    ) {
+        self.resting.clear();
+        self.still.clear();
+        self.movers.clear();
         for link in list {
             let body = &bodies[link.particle() as usize];
             if !body.still {
-                bed.movers.push(*link);
+                self.movers.push(*link);
                 continue;
             }
-            let lane = bed.still.len() % LANES;
+            let lane = self.still.len() % LANES;
             if lane == 0 {
-                bed.resting.push(Resting {
+                self.resting.push(Resting {
                     places: [[0.0; LANES]; D],
                     distances: [0.0; LANES],
                 });
             }
-            bed.still.push(*link);
+            self.still.push(*link);
             // Those at rest are filed where they are.
             let home = &cells.spot(link.particle()).home;
             let turns = Link::<D>::turns_of(link.image());
-            if let Some(last) = bed.resting.last_mut() {
+            if let Some(last) = self.resting.last_mut() {
                 for axis in 0..D {
                     let image = f64::from(turns[axis]) * periods[axis];
                     last.places[axis][lane] = (home[axis] - place[axis]) + image;
@@ -62,7 +68,6 @@ impl<const D: usize> Bed<D> {
                 last.distances[lane] = radius + body.radius;
             }
         }
-        bed
     }
 }
 
@@ -99,11 +104,14 @@ impl<const D: usize> Tie<D> {
     #[inline(never)]
     fn divide(&mut self, particle: u32, periods: &[f64; D], cells: &Cells<D>, bodies: &[Body<D>]) {
         let is_still = |link: &Link<D>| bodies[link.particle() as usize].still;
-        self.bed = self.list.iter().any(is_still).then(|| {
+        if self.list.iter().any(is_still) {
             let radius = bodies[particle as usize].radius;
             let place = &cells.spot(particle).home;
-            Box::new(Bed::make(&self.list, place, radius, periods, cells, bodies))
-        });
+            let bed = self.bed.get_or_insert_with(|| Box::new(Bed::EMPTY));
+            bed.make(&self.list, place, radius, periods, cells, bodies);
+        } else {
+            self.bed = None;
+        }
         self.divided = true;
     }
 
