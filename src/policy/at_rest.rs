@@ -11,9 +11,9 @@ use crate::model::{
     Commands, Impact, Place, Reason, Response, SleepDecision, StatePolicy, Surroundings, WakeCause,
     WakeDecision, Waking,
 };
-use crate::particle::{Mode, ParticleId, Vector};
+use crate::particle::{ParticleId, Vector};
 use crate::policy::asleep::Asleep;
-use crate::policy::supports::{CheckDue, SelfCheck, Supports};
+use crate::policy::supports::{Check, CheckDue, Kept, SelfCheck};
 use crate::time::Time;
 
 /// When a grain may be called at rest.
@@ -82,6 +82,13 @@ impl<C> AtRest<C> {
         }
     }
 
+    fn check(&self) -> Option<Check<'_>> {
+        self.self_check.as_ref().map(|rules| Check {
+            rules,
+            walls_count: self.wall_supports,
+        })
+    }
+
     /// What a sleeper starts with if it wakes now.
     fn given_back<H, const D: usize>(
         &self,
@@ -104,8 +111,7 @@ impl<C> AtRest<C> {
 pub struct RestMemory<H, const D: usize> {
     history: H,
     asleep: Option<Asleep<D>>,
-    /// With the self-check alone.
-    supports: Option<Box<Supports>>,
+    supports: Kept,
 }
 
 impl<const D: usize, C: RestCondition<D>> StatePolicy<D> for AtRest<C> {
@@ -183,13 +189,7 @@ impl<const D: usize, C: RestCondition<D>> StatePolicy<D> for AtRest<C> {
         memory: &mut Self::Memory,
         commands: &mut Commands<CheckDue>,
     ) {
-        if let Some(check) = &self.self_check
-            && near.particle(id).mode == Mode::Frozen
-        {
-            let walls = self.wall_supports;
-            let supports = memory.supports.get_or_insert_default();
-            supports.start(check, walls, id, near, commands);
-        }
+        memory.supports.start(self.check(), id, near, commands);
     }
 
     fn on_sleep<S: Surroundings<D>>(
@@ -204,11 +204,7 @@ impl<const D: usize, C: RestCondition<D>> StatePolicy<D> for AtRest<C> {
             velocity: near.particle(id).velocity - near.ground_velocity(id),
             since: near.time(),
         });
-        if let Some(check) = &self.self_check {
-            let walls = self.wall_supports;
-            let supports = memory.supports.get_or_insert_default();
-            supports.begin(check, walls, id, near, commands);
-        }
+        memory.supports.begin(self.check(), id, near, commands);
     }
 
     fn on_wake<S: Surroundings<D>>(
@@ -220,9 +216,7 @@ impl<const D: usize, C: RestCondition<D>> StatePolicy<D> for AtRest<C> {
         _commands: &mut Commands<CheckDue>,
     ) {
         memory.asleep = None;
-        if let Some(supports) = &mut memory.supports {
-            supports.forget();
-        }
+        memory.supports.forget();
     }
 
     fn on_event<S: Surroundings<D>>(
@@ -233,20 +227,10 @@ impl<const D: usize, C: RestCondition<D>> StatePolicy<D> for AtRest<C> {
         memory: &mut Self::Memory,
         commands: &mut Commands<CheckDue>,
     ) -> Response<D> {
-        let (Some(check), Some(supports)) = (&self.self_check, &memory.supports) else {
-            return Response::Ignore;
-        };
-        let grain = near.particle(id);
-        if grain.mode != Mode::Frozen || !supports.is_current(event) {
-            return Response::Ignore;
-        }
-        let walls = self.wall_supports;
-        match supports.go_on(check, walls, id, near, commands) {
-            Ok(()) => Response::Keep,
-            Err(reason) => {
-                Response::Wake(self.given_back(memory, near.time(), grain.velocity), reason)
-            }
-        }
+        let kept = &memory.supports;
+        kept.go_on(self.check(), event, id, near, commands, |grain| {
+            self.given_back(memory, near.time(), grain.velocity)
+        })
     }
 
     fn on_support_change<S: Surroundings<D>>(
@@ -257,11 +241,8 @@ impl<const D: usize, C: RestCondition<D>> StatePolicy<D> for AtRest<C> {
         memory: &mut Self::Memory,
         _commands: &mut Commands<CheckDue>,
     ) -> Response<D> {
-        let (check, walls) = (self.self_check.as_ref(), self.wall_supports);
-        let Some(supports) = &memory.supports else {
-            return Response::Ignore;
-        };
-        supports.answer(check, walls, id, near, |grain| {
+        let kept = &memory.supports;
+        kept.answer(self.check(), id, near, |grain| {
             self.given_back(memory, near.time(), grain.velocity)
         })
     }

@@ -11,9 +11,9 @@ use crate::model::{
     Commands, Impact, Obstacle, Place, Reason, Response, SleepDecision, StatePolicy, Surroundings,
     WakeCause, WakeDecision, Waking,
 };
-use crate::particle::{Mode, ParticleId, Vector};
+use crate::particle::{ParticleId, Vector};
 use crate::policy::asleep::Asleep;
-use crate::policy::supports::{CheckDue, SelfCheck, Supports};
+use crate::policy::supports::{Check, CheckDue, Kept, SelfCheck};
 use crate::time::Time;
 
 /// The paper's criteria (section 2), and its self-check (section 4).
@@ -100,6 +100,13 @@ impl SlowDescent {
             .unwrap_or(2.0 * self.sleep_speed / ((1.0 - self.frozen_restitution) * gravity))
     }
 
+    fn check(&self) -> Option<Check<'_>> {
+        self.self_check.as_ref().map(|rules| Check {
+            rules,
+            walls_count: self.wall_supports,
+        })
+    }
+
     /// What a sleeper gets back if it wakes now.
     fn given_back<const D: usize>(
         &self,
@@ -149,8 +156,7 @@ pub struct Remembered<const D: usize> {
     /// √(gd).
     previous_speed: Option<f64>,
     rest: Rest<D>,
-    /// With the self-check alone.
-    supports: Option<Box<Supports>>,
+    supports: Kept,
 }
 
 /// How far a grain is from being asleep.
@@ -299,13 +305,7 @@ impl<const D: usize> StatePolicy<D> for SlowDescent {
         memory: &mut Remembered<D>,
         commands: &mut Commands<CheckDue>,
     ) {
-        if let Some(check) = &self.self_check
-            && near.particle(id).mode == Mode::Frozen
-        {
-            let walls = self.wall_supports;
-            let supports = memory.supports.get_or_insert_default();
-            supports.start(check, walls, id, near, commands);
-        }
+        memory.supports.start(self.check(), id, near, commands);
     }
 
     fn on_sleep<S: Surroundings<D>>(
@@ -326,11 +326,7 @@ impl<const D: usize> StatePolicy<D> for SlowDescent {
         if !self.keep_history {
             memory.previous_speed = None;
         }
-        if let Some(check) = &self.self_check {
-            let walls = self.wall_supports;
-            let supports = memory.supports.get_or_insert_default();
-            supports.begin(check, walls, id, near, commands);
-        }
+        memory.supports.begin(self.check(), id, near, commands);
     }
 
     fn on_wake<S: Surroundings<D>>(
@@ -342,9 +338,7 @@ impl<const D: usize> StatePolicy<D> for SlowDescent {
         _commands: &mut Commands<CheckDue>,
     ) {
         memory.rest = Rest::Awake;
-        if let Some(supports) = &mut memory.supports {
-            supports.forget();
-        }
+        memory.supports.forget();
         match cause {
             // Its first contact cannot put it back to sleep.
             WakeCause::Event => memory.previous_speed = Some(0.0),
@@ -369,23 +363,11 @@ impl<const D: usize> StatePolicy<D> for SlowDescent {
         memory: &mut Remembered<D>,
         commands: &mut Commands<CheckDue>,
     ) -> Response<D> {
-        let (Some(check), Some(supports)) = (&self.self_check, &memory.supports) else {
-            return Response::Ignore;
-        };
-        let grain = near.particle(id);
-        if grain.mode != Mode::Frozen || !supports.is_current(event) {
-            return Response::Ignore;
-        }
-        let walls = self.wall_supports;
-        match supports.go_on(check, walls, id, near, commands) {
-            Ok(()) => Response::Keep,
-            Err(reason) => {
-                let gravity = near.gravity();
-                let ground = grain.velocity;
-                let waking = self.given_back(memory, near.time(), &gravity, ground, grain.mass);
-                Response::Wake(waking, reason)
-            }
-        }
+        let kept = &memory.supports;
+        kept.go_on(self.check(), event, id, near, commands, |grain| {
+            let (now, gravity) = (near.time(), near.gravity());
+            self.given_back(memory, now, &gravity, grain.velocity, grain.mass)
+        })
     }
 
     fn on_support_change<S: Surroundings<D>>(
@@ -396,11 +378,8 @@ impl<const D: usize> StatePolicy<D> for SlowDescent {
         memory: &mut Remembered<D>,
         _commands: &mut Commands<CheckDue>,
     ) -> Response<D> {
-        let (check, walls) = (self.self_check.as_ref(), self.wall_supports);
-        let Some(supports) = &memory.supports else {
-            return Response::Ignore;
-        };
-        supports.answer(check, walls, id, near, |grain| {
+        let kept = &memory.supports;
+        kept.answer(self.check(), id, near, |grain| {
             let (now, gravity) = (near.time(), near.gravity());
             self.given_back(memory, now, &gravity, grain.velocity, grain.mass)
         })

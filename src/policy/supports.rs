@@ -2,6 +2,9 @@
 //! there?
 
 mod ahead;
+mod kept;
+
+use std::ops::Deref;
 
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
@@ -10,9 +13,10 @@ use serde::{Deserialize, Serialize};
 use crate::error::SetupError;
 #[cfg(doc)]
 use crate::model::GravityCourse;
-use crate::model::{Commands, Reason, Response, Surroundings, Waking};
-use crate::particle::{Mode, Particle, ParticleId, Vector};
+use crate::model::{Commands, Reason, Surroundings};
+use crate::particle::{Mode, ParticleId, Vector};
 use crate::time::Time;
+pub(super) use kept::Kept;
 
 /// A wall within this gap below a grain supports it, in d.
 pub(super) const WALL_RANGE: f64 = 0.05;
@@ -165,6 +169,22 @@ impl SelfCheck {
     }
 }
 
+/// The self-check of a policy.
+#[derive(Clone, Copy)]
+pub(super) struct Check<'a> {
+    pub(super) rules: &'a SelfCheck,
+    /// Whether walls are supports.
+    pub(super) walls_count: bool,
+}
+
+impl Deref for Check<'_> {
+    type Target = SelfCheck;
+
+    fn deref(&self) -> &SelfCheck {
+        self.rules
+    }
+}
+
 /// The event "grain, check yourself". It carries the number of the sleep it was
 /// made in, so that it is void after a waking.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -174,7 +194,7 @@ pub struct CheckDue {
 
 /// Who held a grain up when it fell asleep.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub(super) struct Supports {
+struct Supports {
     /// Counts the sleeps.
     sleep: u32,
     /// Frozen or fixed grains below.
@@ -192,12 +212,12 @@ impl Supports {
         CheckDue { sleep: self.sleep }
     }
 
-    pub(super) fn is_current(&self, event: CheckDue) -> bool {
+    fn is_current(&self, event: CheckDue) -> bool {
         event.sleep == self.sleep
     }
 
     /// Forgets them, and makes checks that are still due void.
-    pub(super) fn forget(&mut self) {
+    fn forget(&mut self) {
         self.sleep = self.sleep.wrapping_add(1);
         self.below.clear();
         self.above.clear();
@@ -207,8 +227,7 @@ impl Supports {
     /// Notes who holds a grain up now.
     fn record<const D: usize, S: Surroundings<D>>(
         &mut self,
-        check: &SelfCheck,
-        walls_count: bool,
+        check: Check<'_>,
         id: ParticleId,
         near: &S,
     ) {
@@ -229,95 +248,50 @@ impl Supports {
         });
         below.sort_unstable();
         above.sort_unstable();
-        if walls_count {
+        if check.walls_count {
             self.walls = check.walls_below(id, near);
         }
     }
 
-    /// Notes who holds a grain up that starts frozen, and asks for its first
-    /// check.
-    pub(super) fn start<const D: usize, S: Surroundings<D>>(
+    /// Notes who holds up a grain that sleeps from now on, and asks for its first check,
+    /// by the clock after so long.
+    fn begin<const D: usize, S: Surroundings<D>>(
         &mut self,
-        check: &SelfCheck,
-        walls_count: bool,
+        check: Check<'_>,
+        wait: f64,
         id: ParticleId,
         near: &S,
         commands: &mut Commands<CheckDue>,
     ) {
-        self.record(check, walls_count, id, near);
+        self.record(check, id, near);
         match check.timing {
-            Timing::Polled => {
-                let wait = check.first_wait(id, near.time());
-                commands.schedule(id, wait, self.next_check());
-            }
-            Timing::Events => self.settle_down(check, walls_count, id, near, commands),
-        }
-    }
-
-    /// The same for one that falls asleep now.
-    pub(super) fn begin<const D: usize, S: Surroundings<D>>(
-        &mut self,
-        check: &SelfCheck,
-        walls_count: bool,
-        id: ParticleId,
-        near: &S,
-        commands: &mut Commands<CheckDue>,
-    ) {
-        self.record(check, walls_count, id, near);
-        match check.timing {
-            Timing::Polled => {
-                commands.schedule(id, check.wait(near.time()), self.next_check());
-            }
-            Timing::Events => self.settle_down(check, walls_count, id, near, commands),
+            Timing::Polled => commands.schedule(id, wait, self.next_check()),
+            Timing::Events => self.settle_down(check, id, near, commands),
         }
     }
 
     /// Checks, and asks for the next check if all is well.
-    pub(super) fn go_on<const D: usize, S: Surroundings<D>>(
+    fn go_on<const D: usize, S: Surroundings<D>>(
         &self,
-        check: &SelfCheck,
-        walls_count: bool,
+        check: Check<'_>,
         id: ParticleId,
         near: &S,
         commands: &mut Commands<CheckDue>,
     ) -> Result<(), Reason> {
-        self.verify(check, walls_count, id, near)?;
+        self.verify(check, id, near)?;
         match check.timing {
             Timing::Polled => {
                 commands.schedule(id, check.wait(near.time()), self.next_check());
             }
-            Timing::Events => self.look_ahead(check, walls_count, id, near, commands),
+            Timing::Events => self.look_ahead(check, id, near, commands),
         }
         Ok(())
-    }
-
-    /// What a grain does that hears of a change of its supports: if it sleeps and one
-    /// of them is gone, it wakes, as `waking` says for how it is now.
-    pub(super) fn answer<const D: usize, S: Surroundings<D>>(
-        &self,
-        check: Option<&SelfCheck>,
-        walls_count: bool,
-        id: ParticleId,
-        near: &S,
-        waking: impl FnOnce(&Particle<D>) -> Waking<D>,
-    ) -> Response<D> {
-        let grain = near.particle(id);
-        match check {
-            Some(check) if grain.mode == Mode::Frozen => {
-                match self.verify(check, walls_count, id, near) {
-                    Ok(()) => Response::Keep,
-                    Err(reason) => Response::Wake(waking(&grain), reason),
-                }
-            }
-            _ => Response::Ignore,
-        }
     }
 
     /// Whether all of them still hold the grain up.
     fn verify<const D: usize, S: Surroundings<D>>(
         &self,
-        check: &SelfCheck,
-        walls_count: bool,
+        check: Check<'_>,
         id: ParticleId,
         near: &S,
     ) -> Result<(), Reason> {
@@ -338,7 +312,7 @@ impl Supports {
             let braces = self.above.binary_search(&other.id).is_ok();
             still += usize::from(holds || braces);
         });
-        if walls_count {
+        if check.walls_count {
             still += check.walls_below(id, near).min(self.walls) as usize;
         }
         if still == wanted {

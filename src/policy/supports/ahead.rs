@@ -2,7 +2,7 @@
 
 use crate::model::{Commands, GravityCourse, Surroundings};
 use crate::particle::{Mode, ParticleId, Vector};
-use crate::policy::supports::{CheckDue, EDGE, SelfCheck, Supports, WALL_RANGE};
+use crate::policy::supports::{Check, CheckDue, EDGE, Supports, WALL_RANGE};
 use crate::time::Time;
 
 /// No check is asked for sooner than this, in √(d/g), but at the start of a sleep:
@@ -20,8 +20,7 @@ impl Supports {
     /// check is asked for.
     pub(super) fn settle_down<const D: usize, S: Surroundings<D>>(
         &mut self,
-        check: &SelfCheck,
-        walls_count: bool,
+        check: Check<'_>,
         id: ParticleId,
         near: &S,
         commands: &mut Commands<CheckDue>,
@@ -34,7 +33,7 @@ impl Supports {
             commands.lean_within(id, brace, check.support_range);
         }
         if self.below.len() + self.above.len() + self.walls as usize > 0 {
-            self.look_ahead(check, walls_count, id, near, commands);
+            self.look_ahead(check, id, near, commands);
         } else if check.unsupported_wakes {
             // At once; but who is caught where nobody holds it, and put to sleep
             // again and again, is to get on.
@@ -53,13 +52,12 @@ impl Supports {
     /// Asks for the next check at the instant at which gravity leaves a support.
     pub(super) fn look_ahead<const D: usize, S: Surroundings<D>>(
         &self,
-        check: &SelfCheck,
-        walls_count: bool,
+        check: Check<'_>,
         id: ParticleId,
         near: &S,
         commands: &mut Commands<CheckDue>,
     ) {
-        let wait = self.gravity_leaves_after(check, walls_count, id, near);
+        let wait = self.gravity_leaves_after(check, id, near);
         if wait.is_finite() {
             commands.schedule(id, wait.max(SOONEST), self.next_check());
         }
@@ -69,8 +67,7 @@ impl Supports {
     /// interval of the clock if that can't be foreseen.
     fn gravity_leaves_after<const D: usize, S: Surroundings<D>>(
         &self,
-        check: &SelfCheck,
-        walls_count: bool,
+        check: Check<'_>,
         id: ParticleId,
         near: &S,
     ) -> f64 {
@@ -91,7 +88,7 @@ impl Supports {
                 wait = wait.min(foreseen);
             }
         });
-        if walls_count && self.walls > 0 {
+        if check.walls_count && self.walls > 0 {
             let carried = near.ground_velocity(id).norm_squared() > 0.0;
             near.for_each_wall(id, WALL_RANGE, |wall| {
                 let offset = -wall.normal;
