@@ -1,17 +1,16 @@
 //! Support that is lost as an event, by scenes of a few grains.
 
-use grainfall::boundary::{Cuboid, Side};
+use grainfall::boundary::Side;
 use grainfall::engine::Simulation;
-use grainfall::model::{Occurrence, OccurrenceKind as Kind, Parts, StatePolicy};
+use grainfall::model::{Occurrence, OccurrenceKind as Kind, StatePolicy};
 use grainfall::policy::{
     AtRest, Criterion, DisplacementWindow, DynamoSleep, GranularTemperature, IsostaticSupport,
     SelfCheck, SlowDescent, VelocityVariance,
 };
-use grainfall::predict::Polynomial;
 use grainfall::{Particle, ParticleId, Time};
 
 use crate::common::{close, heavy, rule, until, watch};
-use crate::{GAP, Overturned, at, at_once, in_the_open, leaning, with_check};
+use crate::{GAP, at, at_once, in_the_open, leaning, wakes_as_gravity_has_turned_over, with_check};
 
 #[test]
 fn with_events_whose_support_is_woken_wakes_at_the_same_instant() {
@@ -227,29 +226,7 @@ fn with_events_it_wakes_when_the_one_above_leaves() {
 
 #[test]
 fn where_nobody_says_how_gravity_goes_the_clock_stays() {
-    let model = Parts {
-        dynamics: Overturned,
-        predictor: Polynomial,
-        collision_rule: rule(0.0),
-        state_policy: with_check(SelfCheck {
-            interval: 0.3,
-            ..at_once()
-        }),
-        boundary: Cuboid::open(),
-    };
-    let grains = vec![
-        Particle::fixed(at(0.0, 0.0)),
-        Particle::frozen(at(0.0, 1.0)),
-    ];
-    let mut simulation = Simulation::new(model, grains).unwrap();
-    let (_, events) = watch(&mut simulation, &until(2.0));
-    assert_eq!(events.len(), 1);
-    close(
-        events[0].time.units(),
-        1.2,
-        1.0e-12,
-        "the first check after",
-    );
+    wakes_as_gravity_has_turned_over(at_once());
 }
 
 #[test]
