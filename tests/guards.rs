@@ -6,12 +6,12 @@ use common::{deposition, gas, hash, heavy, rain_on_base, rule, until};
 use grainfall::boundary::{Cuboid, Side};
 use grainfall::collide::Restitution;
 use grainfall::dynamics::TurningGround;
-use grainfall::engine::{Guards, Limits, Settings, Simulation, StopReason};
+use grainfall::engine::{Counts, Guards, Limits, Settings, Simulation, StopReason};
 use grainfall::model::{Dynamics, Model, Parts, StatePolicy};
 use grainfall::policy::{Never, SlowDescent};
 use grainfall::predict::Turning;
 use grainfall::setup::Sizes;
-use grainfall::{Mode, Particle, ParticleId, SetupError, Time, Vector};
+use grainfall::{Particle, ParticleId, SetupError, Time, Vector};
 
 fn with(guards: Guards) -> Settings {
     Settings {
@@ -273,11 +273,8 @@ fn a_grain_in_a_narrow_wedge_is_caught() {
 /// A grain that has slid into the end of a groove whose three sides are planes of one
 /// line to 10⁻⁵, and would have to press with 10⁴ times its momentum to stop there; as
 /// found in a deposit of 10⁶.
-fn a_grain_in_a_groove<P: StatePolicy<3>>(
-    policy: P,
-    guards: Guards,
-    limits: &Limits,
-) -> (StopReason, Time, Particle<3>) {
+#[test]
+fn a_grain_in_a_narrow_groove_slides_out_again() {
     let grains = vec![
         Particle::new(
             Vector::<3>::zeros(),
@@ -303,43 +300,59 @@ fn a_grain_in_a_groove<P: StatePolicy<3>>(
             0.8076907192847784,
         )),
     ];
-    let model = heavy(rule(1.0e-3), policy, [Side::Open; 3]);
-    let mut simulation = Simulation::with_settings(model, grains, with(guards)).unwrap();
-    let stop = simulation.run(limits, &mut ());
-    assert!(simulation.max_overlap() < 1.0e-11);
-    println!(
-        "{:?} {:?}",
-        simulation.counts(),
-        simulation.particle(ParticleId(0))
-    );
-    let grain = simulation.particle(ParticleId(0));
-    (stop, simulation.time(), grain)
-}
-
-#[test]
-fn a_grain_in_a_narrow_groove_slides_out_again() {
+    let model = heavy(rule(1.0e-3), Never, [Side::Open; 3]);
     let guards = Guards {
         exit_speed: 1.0e-4,
         ..Guards::default()
     };
+    let mut simulation = Simulation::with_settings(model, grains, with(guards)).unwrap();
     let until = Limits::until(Time::from_units(1.0));
-    let (stop, _, grain) = a_grain_in_a_groove(Never, guards, &until);
-    assert_eq!((stop, grain.mode), (StopReason::Time, Mode::Normal));
-    assert!(grain.position.norm() > 0.1);
+    assert_eq!(simulation.run(&until, &mut ()), StopReason::Time);
+    assert!(simulation.particle(ParticleId(0)).position.norm() > 0.1);
+    assert!(simulation.max_overlap() < 1.0e-11);
+}
+
+/// Three static grains around a fourth that comes from above with this velocity: the
+/// sides of the groove that they make open by 10⁻⁷, too little for any projection.
+fn in_a_shut_groove<P: StatePolicy<3>>(policy: P, guards: Guards) -> (StopReason, Counts) {
+    let mut grains = vec![Particle::new(
+        Vector::<3>::zeros(),
+        Vector::<3>::new(0.0, 0.0, -0.1),
+    )];
+    grains.extend((0..3).map(|third| {
+        let angle = 2.0 * core::f64::consts::PI / 3.0 * f64::from(third);
+        let (sine, cosine) = libm::sincos(angle);
+        Particle::fixed(Vector::<3>::new(cosine, sine, -1.0e-7).normalize())
+    }));
+    let model = heavy(rule(1.0e-3), policy, [Side::Open; 3]);
+    let mut simulation = Simulation::with_settings(model, grains, with(guards)).unwrap();
+    let limits = Limits {
+        all_frozen: true,
+        ..Limits::events(5000)
+    };
+    let stop = simulation.run(&limits, &mut ());
+    (stop, *simulation.counts())
 }
 
 #[test]
-fn a_cascade_without_remedy_ends_in_sleep() {
+fn a_cascade_on_static_grains_without_remedy_ends_in_sleep() {
     let guards = Guards {
-        // Never due.
-        cascade: Some(u32::MAX),
+        cascade: Some(1),
         collapse: Some(1000),
         ..Guards::default()
     };
-    let limits = Limits {
-        all_frozen: true,
-        ..Limits::events(2000)
-    };
-    let (stop, time, _) = a_grain_in_a_groove(SlowDescent::default(), guards, &limits);
-    assert_eq!((stop, time), (StopReason::AllFrozen, Time::ZERO));
+    let (stop, counts) = in_a_shut_groove(SlowDescent::default(), guards);
+    assert_eq!((stop, counts.frozen), (StopReason::AllFrozen, 500));
+    // It collapses all the same where nobody sleeps, or the guard has no way to help.
+    let (stop, _) = in_a_shut_groove(Never, guards);
+    assert!(matches!(stop, StopReason::Collapse(_)), "{stop:?}");
+    for (cascade, exit_speed) in [(None, 1.0e-5), (Some(1), 0.0), (Some(5), 1.0e-5)] {
+        let guards = Guards {
+            cascade,
+            exit_speed,
+            ..guards
+        };
+        let (stop, _) = in_a_shut_groove(SlowDescent::default(), guards);
+        assert!(matches!(stop, StopReason::Collapse(_)), "{stop:?}");
+    }
 }

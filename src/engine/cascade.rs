@@ -3,10 +3,10 @@
 use crate::engine::cells::Found;
 use crate::engine::ledger::Entry;
 use crate::engine::projection::{Member, Touch, project, project_within};
-use crate::engine::settings::Collapse;
+use crate::engine::settings::{Collapse, Guards};
 use crate::engine::simulation::Simulation;
 use crate::engine::slot::Partner;
-use crate::model::{Boundary, Dynamics, Model, StatePolicy, Wall};
+use crate::model::{Boundary, Dynamics, Model, Reason, StatePolicy, Wall};
 use crate::particle::{Mode, Particle, ParticleId, Vector};
 
 /// Difference of squared distances up to which two surfaces count as touching,
@@ -36,8 +36,9 @@ const STUBBORN: u32 = 256;
 /// close, over the fastest grain's speed.
 const NARROW: f64 = 1.0e-6;
 
-/// A grain that touches static ones falls asleep after this part of the collisions that
-/// count as collapse: whatever goes on there has no end that could be told.
+/// A grain that has collided at one instant so many times less often than counts as
+/// collapse, with nothing but static obstacles, falls asleep: whatever goes on there has
+/// no end that could be told.
 const LAST_RESORT: u32 = 2;
 
 /// A cluster of grains that touch is not followed beyond this many.
@@ -51,17 +52,26 @@ struct Cluster<const D: usize> {
     statics: Vec<u32>,
 }
 
+/// Velocities of a cluster.
+struct Stopped<const D: usize> {
+    /// Those before, or nearer ones: the others are found from these.
+    nearly: Vec<Vector<D>>,
+    /// The nearest with which nobody comes nearer.
+    resting: Vec<Vector<D>>,
+}
+
 impl<const D: usize> Cluster<D> {
-    /// The velocities nearest to `before` with which nobody comes nearer, and velocities
-    /// from which others can be found as well: those before, or on the way.
-    fn resting(&self, before: &[Vector<D>]) -> Option<(Vec<Vector<D>>, Vec<Vector<D>>)> {
+    /// Stops whoever comes nearer to somebody, where the ground moves like this.
+    fn stopped(&self, before: &[Vector<D>], ground: &Vector<D>) -> Option<Stopped<D>> {
         if let Some(resting) = project(before, &self.touches, 0.0) {
-            return Some((before.to_vec(), resting));
+            let nearly = before.to_vec();
+            return Some(Stopped { nearly, resting });
         }
-        let fastest = before.iter().map(|v| v.norm_squared()).fold(0.0, f64::max);
-        let nearly = project_within(before, &self.touches, 0.0, NARROW * fastest.sqrt())?;
+        let squares = before.iter().map(|v| (v - ground).norm_squared());
+        let creep = NARROW * squares.fold(0.0, f64::max).sqrt();
+        let nearly = project_within(before, &self.touches, 0.0, creep)?;
         let resting = project(&nearly, &self.touches, 0.0)?;
-        Some((nearly, resting))
+        Some(Stopped { nearly, resting })
     }
 
     /// The velocities nearest to `before` with which nobody comes nearer and the first
@@ -86,8 +96,8 @@ impl<const D: usize> Cluster<D> {
 /// What the guard did.
 #[derive(Debug)]
 pub(super) struct Relief<const D: usize> {
-    /// The grain is caught between static ones and has to sleep where it is.
-    pub(super) caught: bool,
+    /// Why the grain has to sleep where it is, if it has to.
+    pub(super) caught: Option<Reason>,
     /// Grains whose velocities were changed, and who have to be predicted anew,
     /// with the change, in √(gd).
     pub(super) disturbed: Vec<(u32, Vector<D>)>,
@@ -97,7 +107,7 @@ impl<const D: usize> Relief<D> {
     /// Nothing.
     pub(super) fn none() -> Self {
         Relief {
-            caught: false,
+            caught: None,
             disturbed: Vec::new(),
         }
     }
@@ -117,14 +127,20 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
             self.collapse = Some(self.name_collapse(particle, run));
         }
         let sleeps = self.model.state_policy().sleeps();
-        let caught =
-            |this: &mut Self| this.is_caught(particle) || this.is_past_remedy(particle, run);
-        if sleeps && guards.cascade.is_some() && caught(self) {
-            self.counts.guard += 1;
-            return Relief {
-                caught: true,
-                ..Relief::none()
+        let between = Reason::new("caught between static grains", 0.0, 0.0);
+        if sleeps && guards.cascade.is_some() {
+            let caught = if self.is_caught(particle) {
+                Some(between)
+            } else {
+                self.past_remedy(particle, run)
             };
+            if caught.is_some() {
+                self.counts.guard += 1;
+                return Relief {
+                    caught,
+                    ..Relief::none()
+                };
+            }
         }
         let due = |limit: u32| run >= limit && run.is_multiple_of(limit);
         if !guards.cascade.is_some_and(due) {
@@ -140,7 +156,10 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
             .iter()
             .map(|&member| self.world.particle_now(&self.model, member).velocity)
             .collect();
-        let Some((nearly, resting)) = cluster.resting(&before) else {
+        let place = self.world.particle_now(&self.model, particle).position;
+        let now = self.world.clock;
+        let ground = self.model.dynamics().ground_velocity(&place, now);
+        let Some(Stopped { nearly, resting }) = cluster.stopped(&before, &ground) else {
             return Relief::none();
         };
         // In a narrow cone a small exit speed along the normals is a large one
@@ -161,14 +180,8 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
         };
         let mut leaving = leave(&|exit| project(&nearly, &cluster.touches, exit));
         // Where contacts work against each other some grain cannot leave.
-        let caught = sleeps && leaving.is_none() && {
-            let place = self.world.particle_now(&self.model, particle).position;
-            let ground = self
-                .model
-                .dynamics()
-                .ground_velocity(&place, self.world.clock);
-            (resting[0] - ground).norm_squared().sqrt() <= most
-        };
+        let is_at_rest = (resting[0] - ground).norm_squared().sqrt() <= most;
+        let caught = sleeps && leaving.is_none() && is_at_rest;
         if leaving.is_none() && !caught && run / STUBBORN >= guards.cascade.unwrap_or(run) {
             // Somebody else cannot leave. At rest within rounding, this one would go on
             // colliding with what it slides along, so it leaves alone: all its
@@ -197,7 +210,10 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
                 .note_change(Entry::Guard, member, &was, &velocity);
             disturbed.push((member, velocity - was));
         }
-        Relief { caught, disturbed }
+        Relief {
+            caught: caught.then_some(between),
+            disturbed,
+        }
     }
 
     /// Whether a grain is caught between static obstacles that all but touch it:
@@ -235,15 +251,25 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
         hurried && strength > 0.0 && way(gravity / strength).is_some_and(held)
     }
 
-    /// Whether a grain has gone on colliding at one instant, on static ones, through all
-    /// that the guard has done.
-    fn is_past_remedy(&self, particle: u32, run: u32) -> bool {
-        let last = |limit: u32| run >= limit.div_ceil(LAST_RESORT);
-        self.settings.guards.collapse.is_some_and(last) && {
-            let mut leans = false;
-            self.for_each_static(particle, TOUCHING, |_, _| leans = true);
-            leans
+    /// Why a grain has to sleep that has gone on colliding with nothing but static
+    /// obstacles, at one instant, through all that the guard has done.
+    fn past_remedy(&self, particle: u32, run: u32) -> Option<Reason> {
+        let Guards {
+            cascade,
+            exit_speed,
+            collapse,
+            ..
+        } = self.settings.guards;
+        let last = collapse? / LAST_RESORT;
+        let tried = exit_speed > 0.0 && cascade.is_some_and(|due| run / STUBBORN >= due);
+        let confined = self.traces[particle as usize].confined >= run;
+        if run < last || !tried || !confined || self.collapse.is_some() {
+            return None;
         }
+        let mut leans = false;
+        self.for_each_static(particle, TOUCHING, |_, grain| leans |= grain.is_some());
+        let what = "collided without end at one instant";
+        leans.then(|| Reason::new(what, f64::from(run), f64::from(last)))
     }
 
     fn name_collapse(&self, particle: u32, run: u32) -> Collapse {

@@ -396,12 +396,11 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
         &mut self,
         particle: u32,
         decision: Option<(Place, Reason)>,
-        caught: bool,
+        caught: Option<Reason>,
         observer: &mut O,
     ) {
-        if caught {
-            let reason = Reason::new("caught between static grains", 0.0, 0.0);
-            self.fall_asleep(particle, Some(reason), observer);
+        if caught.is_some() {
+            self.fall_asleep(particle, caught, observer);
             return;
         }
         match decision {

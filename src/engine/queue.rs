@@ -446,4 +446,19 @@ mod tests {
         }
         assert_eq!(order, [2, 3, 1, 0]);
     }
+
+    #[test]
+    fn an_entry_out_of_order_is_seen() {
+        let mut queue = EventQueue::new(2, Time::ZERO);
+        let keys = [key(0.0, 0), key(1.0e-9, 1)];
+        for (particle, key) in (0..).zip(keys) {
+            queue.push_empty();
+            queue.set(particle, key);
+        }
+        assert_eq!(queue.heap.len(), 2);
+        assert_eq!(queue.check_entry(1, keys[1]), Ok(()));
+        queue.heap[0].key = key(2.0e-9, 0);
+        let fault = queue.check_entry(1, keys[1]).unwrap_err();
+        assert!(fault.contains("comes before 0"), "{fault}");
+    }
 }

@@ -32,8 +32,9 @@ pub struct Guards {
     /// with a static grain, in √(d/g). 0 switches it off.
     pub hold: f64,
     /// A run stops as collapsed when one grain has made this many collisions at
-    /// one instant. `None` lets it go on for ever. Where grains sleep and `cascade` is
-    /// on, one that touches static ones falls asleep after half as many instead.
+    /// one instant. `None` lets it go on for ever. Where grains sleep, and `cascade` and
+    /// `exit_speed` are on, one that has met nothing but static obstacles falls asleep
+    /// after half as many instead.
     pub collapse: Option<u32>,
 }
 

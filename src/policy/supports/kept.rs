@@ -11,8 +11,8 @@ use crate::policy::supports::{Check, CheckDue, Supports};
 pub(in crate::policy) struct Kept(Option<Box<Supports>>);
 
 impl Kept {
-    /// For grains as the simulation starts: one that is frozen notes who holds it up,
-    /// and asks for its first check.
+    /// For grains as the simulation starts, or as they are inserted: one that is frozen
+    /// notes who holds it up, and asks for its first check.
     pub(in crate::policy) fn start<const D: usize, S: Surroundings<D>>(
         &mut self,
         check: Option<Check<'_>>,

@@ -130,8 +130,8 @@ pub struct Guards {
     #[schemars(range(min = 0.0), extend("x-unit" = "√(d/g)"))]
     pub hold: f64,
     /// The run stops as collapsed when one grain has made this many collisions
-    /// at one instant; 0: it goes on for ever. With the cascade guard, one that touches
-    /// static ones falls asleep after half as many instead.
+    /// at one instant; 0: it goes on for ever. Where grains sleep and the cascade guard is
+    /// on, one that has met nothing but static ones falls asleep after half as many instead.
     pub collapse: u32,
 }
 
