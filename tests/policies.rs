@@ -6,8 +6,8 @@ mod common;
 use common::{close, heavy, rule, until, watch};
 use grainfall::boundary::Side;
 use grainfall::engine::{Limits, Simulation, StopReason};
-use grainfall::model::{Model, Occurrence, OccurrenceKind as Kind};
-use grainfall::policy::{EnergyStore, SlowDescent, StoreAt};
+use grainfall::model::{Model, Occurrence, OccurrenceKind as Kind, StatePolicy};
+use grainfall::policy::{Criterion, EnergyStore, SlowDescent, StoreAt};
 use grainfall::{Mode, Particle, ParticleId, Vector};
 
 /// A grain in the plane.
@@ -51,6 +51,14 @@ fn ball_on_grain() -> Vec<Particle<2>> {
 }
 const SEVENTH: f64 = 2.327872;
 const LEAVING: f64 = 0.0016384;
+
+/// It is kept for every grain, asleep or not.
+#[cfg(target_pointer_width = "64")]
+#[test]
+fn what_the_papers_criterion_remembers_is_short() {
+    assert!(size_of::<<SlowDescent as StatePolicy<3>>::Memory>() <= 72);
+    assert!(size_of::<<Criterion as StatePolicy<3>>::Memory>() <= 72);
+}
 
 #[test]
 fn it_sleeps_half_way_to_its_next_collision() {

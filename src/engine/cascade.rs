@@ -36,9 +36,8 @@ const STUBBORN: u32 = 256;
 /// close, over the fastest grain's speed.
 const NARROW: f64 = 1.0e-6;
 
-/// A grain that has collided at one instant so many times less often than counts as
-/// collapse, with nothing but static obstacles, falls asleep: whatever goes on there has
-/// no end that could be told.
+/// The collisions that count as collapse over those, with nothing but static obstacles,
+/// after which a grain falls asleep: whatever goes on there has no end that could be told.
 const LAST_RESORT: u32 = 2;
 
 /// A cluster of grains that touch is not followed beyond this many.
@@ -261,9 +260,12 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
             ..
         } = self.settings.guards;
         let last = collapse? / LAST_RESORT;
+        if run < last {
+            return None;
+        }
         let tried = exit_speed > 0.0 && cascade.is_some_and(|due| run / STUBBORN >= due);
         let confined = self.traces[particle as usize].confined >= run;
-        if run < last || !tried || !confined || self.collapse.is_some() {
+        if !tried || !confined || self.collapse.is_some() {
             return None;
         }
         let mut leans = false;

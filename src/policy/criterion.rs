@@ -64,11 +64,11 @@ trait Kind<const D: usize>: Default {
 }
 
 macro_rules! kinds {
-    ($($kind:ident: $memory:ty, $wrapped:ident => $wrap:expr;)*) => {
+    ($($kind:ident: $memory:ty,)*) => {
         $(impl<const D: usize> Kind<D> for $memory {
             fn wrap(self) -> Inner<D> {
-                let $wrapped = self;
-                Inner::$kind($wrap)
+                // In a box where there is one.
+                Inner::$kind(self.into())
             }
             fn of(inner: &Inner<D>) -> Option<&Self> {
                 match inner {
@@ -87,11 +87,11 @@ macro_rules! kinds {
 }
 
 kinds! {
-    Descent: Remembered<D>, memory => memory;
-    Displacement: RestMemory<HistoryOf<DisplacementWindow, D>, D>, memory => Box::new(memory);
-    Variance: RestMemory<HistoryOf<VelocityVariance, D>, D>, memory => Box::new(memory);
-    Temperature: RestMemory<HistoryOf<GranularTemperature, D>, D>, memory => Box::new(memory);
-    Dynamo: RestMemory<HistoryOf<DynamoSleep, D>, D>, memory => Box::new(memory);
+    Descent: Remembered<D>,
+    Displacement: RestMemory<HistoryOf<DisplacementWindow, D>, D>,
+    Variance: RestMemory<HistoryOf<VelocityVariance, D>, D>,
+    Temperature: RestMemory<HistoryOf<GranularTemperature, D>, D>,
+    Dynamo: RestMemory<HistoryOf<DynamoSleep, D>, D>,
 }
 
 impl<const D: usize> CriterionMemory<D> {

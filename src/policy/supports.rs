@@ -254,18 +254,18 @@ impl Supports {
     }
 
     /// Notes who holds up a grain that sleeps from now on, and asks for its first check,
-    /// by the clock after so long.
+    /// by the clock after this wait.
     fn begin<const D: usize, S: Surroundings<D>>(
         &mut self,
         check: Check<'_>,
-        wait: f64,
+        wait: impl FnOnce() -> f64,
         id: ParticleId,
         near: &S,
         commands: &mut Commands<CheckDue>,
     ) {
         self.record(check, id, near);
         match check.timing {
-            Timing::Polled => commands.schedule(id, wait, self.next_check()),
+            Timing::Polled => commands.schedule(id, wait(), self.next_check()),
             Timing::Events => self.settle_down(check, id, near, commands),
         }
     }

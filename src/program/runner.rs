@@ -122,32 +122,8 @@ where
 impl<C: Choice> Runner for C {
     fn start(&self, job: &Job, signals: &Signals) -> Result<u8, ProgramError> {
         match job.scenario.dimension {
-            Dimension::Two => {
-                let start = Start::<2>::new(&job.origin, &job.scenario)?;
-                with_model(
-                    self,
-                    &job.origin,
-                    &job.scenario,
-                    Begin {
-                        job,
-                        start,
-                        signals,
-                    },
-                )?
-            }
-            Dimension::Three => {
-                let start = Start::<3>::new(&job.origin, &job.scenario)?;
-                with_model(
-                    self,
-                    &job.origin,
-                    &job.scenario,
-                    Begin {
-                        job,
-                        start,
-                        signals,
-                    },
-                )?
-            }
+            Dimension::Two => begin::<_, 2>(self, job, signals),
+            Dimension::Three => begin::<_, 3>(self, job, signals),
         }
     }
 
@@ -195,6 +171,19 @@ impl<C: Choice> Runner for C {
             Dimension::Three => check::<_, 3>(self, origin, scenario),
         }
     }
+}
+
+fn begin<C, const D: usize>(choice: &C, job: &Job, signals: &Signals) -> Result<u8, ProgramError>
+where
+    C: Choice,
+    C::Policy: StatePolicy<D>,
+{
+    let task = Begin {
+        job,
+        start: Start::<D>::new(&job.origin, &job.scenario)?,
+        signals,
+    };
+    with_model(choice, &job.origin, &job.scenario, task)?
 }
 
 fn count<C, const D: usize>(

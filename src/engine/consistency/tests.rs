@@ -72,7 +72,7 @@ fn faults_of_the_queue_are_seen() {
     let mut heap = heap();
     heap.slots[mover as usize].contact = heap.world.clock + 1.0e-9;
     heap.slots[mover as usize].partner = Partner::Particle(0);
-    seen(&heap, "filed");
+    seen(&heap, " is filed ");
 
     let mut heap = sound;
     let slots = heap.slots.clone();

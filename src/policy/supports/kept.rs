@@ -23,7 +23,7 @@ impl Kept {
         if let Some(check) = check
             && near.particle(id).mode == Mode::Frozen
         {
-            let wait = check.first_wait(id, near.time());
+            let wait = || check.first_wait(id, near.time());
             let supports = self.0.get_or_insert_default();
             supports.begin(check, wait, id, near, commands);
         }
@@ -38,7 +38,7 @@ impl Kept {
         commands: &mut Commands<CheckDue>,
     ) {
         if let Some(check) = check {
-            let wait = check.wait(near.time());
+            let wait = || check.wait(near.time());
             let supports = self.0.get_or_insert_default();
             supports.begin(check, wait, id, near, commands);
         }
