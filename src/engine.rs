@@ -34,6 +34,7 @@ mod settings;
 mod setup;
 mod simulation;
 mod slot;
+mod sparse;
 mod speeds;
 mod transitions;
 mod view;

@@ -51,7 +51,7 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
     /// Takes a step for one grain.
     #[inline]
     fn fetch(&self, particle: u32, step: usize) {
-        let partner = || match self.slots[particle as usize].partner {
+        let partner = || match self.slots[particle].partner {
             Partner::Particle(partner) => Some(partner),
             _ => None,
         };
@@ -81,7 +81,7 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
     #[inline]
     fn touch(&self, particle: u32) {
         let place = particle as usize;
-        black_box(self.slots[place].partner_stamp);
+        black_box(self.slots[particle].partner_stamp);
         black_box(self.world.bodies[place].position[0]);
         black_box(self.world.bodies[place].stamp);
         self.world.glances.touch(particle);

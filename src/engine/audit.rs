@@ -39,7 +39,7 @@ fn audit_lists<M: Model<D>, const D: usize>(simulation: &Simulation<M, D>) -> Re
                 return Err(format!("{one} lists {entry:?}, which does not list it"));
             }
         }
-        if let Partner::Particle(other) = simulation.slots[one as usize].partner
+        if let Partner::Particle(other) = simulation.slots[one].partner
             && other as usize >= simulation.world.bodies.len()
         {
             return Err(format!("{one} waits for {other}, who is not there"));

@@ -54,7 +54,7 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
     pub(super) fn meet_newcomers(&mut self, particle: u32) -> bool {
         self.world.near.make_bed(particle, &self.world.bodies);
         let (bed, _) = self.world.near.bed(particle);
-        let known = self.slots[particle as usize].contact;
+        let known = self.slots[particle].contact;
         let Some(onlooker) = self.world.onlooker(particle, known) else {
             return false;
         };
@@ -80,7 +80,7 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
                     (bound, place) = (candidate.bound, other);
                 }
             }
-            if bound > self.slots[particle as usize].contact - now {
+            if bound > self.slots[particle].contact - now {
                 break;
             }
             let Candidate { link, .. } = near.swap_remove(place);
@@ -107,14 +107,14 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
         }
         let mut near = std::mem::take(&mut self.candidates);
         let now = self.world.clock;
-        let known = self.slots[particle as usize].contact;
+        let known = self.slots[particle].contact;
         // It is likely to be back not much later than it can be, and bounds are
         // the better the shorter they have to look ahead.
         let mut until = back.map_or(known, |(_, bound)| known.min(now + 2.0 * bound));
         loop {
             self.find_candidates(particle, until, back, &mut near);
             self.ask(particle, asked, &mut near);
-            let contact = self.slots[particle as usize].contact;
+            let contact = self.slots[particle].contact;
             if contact <= until {
                 break;
             }
@@ -210,7 +210,7 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
                 }
                 // Later than its own bound, the other finds it anyway; those at rest
                 // have none.
-                if !at_rest && bound > slots[link.particle() as usize].bound() - now {
+                if !at_rest && bound > slots[link.particle()].bound() - now {
                     continue;
                 }
                 candidates.push(Candidate {

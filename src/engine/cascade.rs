@@ -203,7 +203,9 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
                 self.settle(member, position, velocity);
             }
             self.traces[member as usize].partner = Partner::Nobody;
-            self.slots[member as usize].sleep = crate::time::Time::NEVER;
+            if let Some(slot) = self.slots.own(member) {
+                slot.sleep = crate::time::Time::NEVER;
+            }
             self.note_speed(member);
             self.world
                 .note_change(Entry::Guard, member, &was, &velocity);

@@ -343,7 +343,7 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
         let was_static = self.world.bodies[particle as usize].mode.is_static();
         self.world
             .write(model, particle, position, velocity, Mode::Normal);
-        self.slots[particle as usize] = Slot::EMPTY;
+        *self.slots.make(particle) = Slot::EMPTY;
         self.tie_if_moving(particle);
         self.note_speed(particle);
         self.tell_dependants(particle, was_static);
@@ -408,7 +408,7 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
             Some((Place::Here, reason)) => self.fall_asleep(particle, Some(reason), observer),
             Some((Place::HalfWay, _)) => {
                 if let Some(wait) = self.next_collision(particle) {
-                    self.slots[particle as usize].sleep = self.world.clock + 0.5 * wait;
+                    self.slots.make(particle).sleep = self.world.clock + 0.5 * wait;
                     self.enqueue(particle);
                 }
             }

@@ -133,7 +133,7 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
         if body.still != (body.mode.is_static() && flight.is_at_rest()) {
             return Err(format!("grain {particle} is thought still: {body:?}"));
         }
-        let slot = &self.slots[index];
+        let slot = &self.slots[particle];
         for (what, time) in [
             ("contact", slot.contact),
             ("sleep", slot.sleep),

@@ -85,7 +85,7 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
     }
 
     fn carry_out<O: Observer<D>>(&mut self, particle: u32, key: Key, observer: &mut O) {
-        let slot = self.slots[particle as usize];
+        let slot = self.slots[particle];
         match (key.rank, slot.partner) {
             (Rank::Contact, Partner::Particle(other)) => {
                 if self.world.bodies[other as usize].stamp == slot.partner_stamp {
@@ -106,7 +106,7 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
     fn next_event(&mut self) -> Option<(Key, Source)> {
         let policy = self.alarms.peek().map(|Reverse(alarm)| alarm.key);
         let slots = &self.slots;
-        let known = |particle: u32| slots[particle as usize].key(particle);
+        let known = |particle: u32| slots[particle].key(particle);
         match (self.queue.peek(known), policy) {
             (None, None) => None,
             (Some((particle, key)), None) => Some((key, Source::Particle(particle))),

@@ -13,6 +13,7 @@ use std::hint::black_box;
 use wide::f64x4;
 
 use crate::engine::body::{LONG_AGO, World, flight_of, rounding};
+use crate::engine::sparse::Sparse;
 use crate::model::{Dynamics, Flight, LANES, Model, Motion, Predictor};
 use crate::particle::{Mode, ParticleId, Vector};
 use crate::time::Time;
@@ -27,8 +28,7 @@ const SHARP: f64 = 1.0e-9;
 /// with: 128 u.
 const ROUND: f64 = 64.0 * f64::EPSILON;
 
-/// A grain at the start of the epoch; its radius is NaN if it is not known well
-/// enough or moves in another frame.
+/// A grain at the start of the epoch.
 #[derive(Clone, Copy, Debug)]
 #[repr(align(64))]
 pub(super) struct Glance<const D: usize> {
@@ -41,10 +41,23 @@ pub(super) struct Glance<const D: usize> {
     bound: f64,
 }
 
+impl<const D: usize> Glance<D> {
+    /// Of somebody who may be anywhere.
+    fn unknown() -> Self {
+        Glance {
+            place: Vector::repeat(f64::NAN),
+            velocity: Vector::zeros(),
+            radius: f64::NAN,
+            bound: f64::INFINITY,
+        }
+    }
+}
+
 /// All grains at one instant.
 #[derive(Clone, Debug)]
 pub(super) struct Glances<const D: usize> {
-    all: Vec<Glance<D>>,
+    /// Of those that have a list and are known well enough.
+    all: Sparse<Glance<D>>,
     epoch: Time,
     /// The acceleration of the frame, if there is one.
     frame: Option<Vector<D>>,
@@ -65,9 +78,9 @@ pub(super) struct Onlooker<const D: usize> {
 }
 
 impl<const D: usize> Glances<D> {
-    pub(super) fn new(epoch: Time) -> Self {
+    pub(super) fn new(count: usize, epoch: Time) -> Self {
         Glances {
-            all: Vec::new(),
+            all: Sparse::new(count, Glance::unknown()),
             epoch,
             frame: None,
         }
@@ -77,6 +90,11 @@ impl<const D: usize> Glances<D> {
         self.epoch
     }
 
+    /// Adds a grain of whom nothing is known yet.
+    pub(super) fn add(&mut self) {
+        self.all.push();
+    }
+
     pub(super) fn forget_last(&mut self) {
         self.all.pop();
     }
@@ -84,7 +102,10 @@ impl<const D: usize> Glances<D> {
     /// Notes until when a grain is left alone.
     #[inline]
     pub(super) fn set_bound(&mut self, particle: u32, bound: Time) {
-        self.all[particle as usize].bound = self.offset(bound);
+        let bound = self.offset(bound);
+        if let Some(glance) = self.all.own(particle) {
+            glance.bound = bound;
+        }
     }
 
     /// A time from the epoch, or a little more.
@@ -96,13 +117,13 @@ impl<const D: usize> Glances<D> {
     /// Reads how a grain is seen, to have it at hand.
     #[inline]
     pub(super) fn touch(&self, particle: u32) {
-        black_box(self.all[particle as usize].radius);
+        black_box(self.all[particle].radius);
     }
 
     /// Whether nothing can be said of a grain.
     #[inline]
     pub(super) fn is_unknown(&self, particle: u32) -> bool {
-        self.all[particle as usize].radius.is_nan()
+        !self.all.has(particle)
     }
 }
 
@@ -112,14 +133,14 @@ impl<const D: usize> World<D> {
         let glance = self.made(model, particle);
         let body = &self.bodies[particle as usize];
         let passed = self.glances.epoch - body.since;
-        if passed.abs() > EPOCH && !glance.radius.is_nan() {
+        if passed.abs() > EPOCH && glance.is_some() {
             let flight = flight_of(model, particle, body);
             let rounding = rounding(&flight, passed.abs() + EPOCH);
             self.blur = self.blur.max(2.0 * rounding);
         }
-        match self.glances.all.get_mut(particle as usize) {
-            Some(known) => *known = glance,
-            None => self.glances.all.push(glance),
+        match glance {
+            Some(glance) => *self.glances.all.make(particle) = glance,
+            None => self.glances.all.clear(particle),
         }
     }
 
@@ -134,7 +155,9 @@ impl<const D: usize> World<D> {
         let flight = model.dynamics().flight(&still, epoch);
         self.glances.frame = model.predictor().frame(&flight);
         self.glances.epoch = epoch;
-        for particle in 0..self.bodies.len() as u32 {
+        self.glances.all.clear_all();
+        let tied: Vec<u32> = self.near.tied().collect();
+        for particle in tied {
             self.glance(model, particle);
         }
     }
@@ -154,7 +177,7 @@ impl<const D: usize> World<D> {
     /// A grain that is to look at others; nothing if it can't from afar.
     #[inline(always)]
     pub(super) fn onlooker(&self, particle: u32, horizon: Time) -> Option<Onlooker<D>> {
-        let own = &self.glances.all[particle as usize];
+        let own = &self.glances.all[particle];
         let passed = self.clock - self.glances.epoch;
         if own.radius.is_nan() || !(0.0..=EPOCH).contains(&passed) {
             return None;
@@ -178,27 +201,26 @@ impl<const D: usize> World<D> {
 }
 
 impl<const D: usize> World<D> {
-    /// How a grain is seen; its bound is that of one to be predicted anew.
-    fn made<M: Model<D>>(&self, model: &M, particle: u32) -> Glance<D> {
+    /// How a grain with a list is seen, if it is known well enough and moves in the
+    /// frame; its bound is that of one to be predicted anew.
+    fn made<M: Model<D>>(&self, model: &M, particle: u32) -> Option<Glance<D>> {
         let body = &self.bodies[particle as usize];
         let flight = flight_of(model, particle, body);
         let passed = self.glances.epoch - body.since;
         let seen = !M::Dynamics::GROWS
+            && self.near.is_tied(particle)
             && self.glances.frame.is_some()
             && model.predictor().frame(&flight) == self.glances.frame;
-        let mut glance = Glance {
-            place: Vector::repeat(f64::NAN),
-            velocity: Vector::zeros(),
-            radius: f64::NAN,
-            bound: f64::INFINITY,
-        };
-        if seen && (passed.abs() <= EPOCH || rounding(&flight, passed.abs() + EPOCH) <= SHARP) {
-            let then = flight.advanced(passed);
-            glance.place = then.start() - self.near.home_shift(particle);
-            glance.velocity = then.start_velocity();
-            glance.radius = body.radius;
+        if !seen || (passed.abs() > EPOCH && rounding(&flight, passed.abs() + EPOCH) > SHARP) {
+            return None;
         }
-        glance
+        let then = flight.advanced(passed);
+        Some(Glance {
+            place: then.start() - self.near.home_shift(particle),
+            velocity: then.start_velocity(),
+            radius: body.radius,
+            bound: f64::INFINITY,
+        })
     }
 
     /// Whether a grain is as it was said to be.
@@ -208,10 +230,8 @@ impl<const D: usize> World<D> {
         particle: u32,
         bound: Time,
     ) -> Result<(), String> {
-        let (known, made) = (
-            &self.glances.all[particle as usize],
-            self.made(model, particle),
-        );
+        let known = &self.glances.all[particle];
+        let made = self.made(model, particle).unwrap_or_else(Glance::unknown);
         let bits = |v: &Vector<D>| v.map(f64::to_bits);
         let same = bits(&known.place) == bits(&made.place)
             && bits(&known.velocity) == bits(&made.velocity)
@@ -238,7 +258,7 @@ impl<const D: usize> Glances<D> {
         few: [u32; LANES],
         shifts: Option<[Vector<D>; LANES]>,
     ) -> (f64x4, u32) {
-        let few = few.map(|other| &self.all[other as usize]);
+        let few = few.map(|other| &self.all[other]);
         let (mut squared, mut b, mut a) = (f64x4::ZERO, f64x4::ZERO, f64x4::ZERO);
         for axis in 0..D {
             let place = f64x4::new(few.map(|other| other.place[axis]));
@@ -254,9 +274,10 @@ impl<const D: usize> Glances<D> {
         }
         let distance = f64x4::new(few.map(|other| other.radius)) + (own.radius + own.blur);
         let contact = distance * distance;
-        let c0 = squared - contact - (squared * 9.0 + contact * 4.0) * ROUND;
+        let c0 = squared * (1.0 - 9.0 * ROUND) - contact * (1.0 + 4.0 * ROUND);
         let discriminant = b * b * (1.0 + ROUND) - a * c0;
-        let root = discriminant.fast_max(f64x4::ZERO).sqrt();
+        // No number if they do not meet, and not looked at then.
+        let root = discriminant.sqrt();
         let never = f64x4::splat(f64::INFINITY);
         let meets = b.simd_lt(f64x4::ZERO) & discriminant.simd_ge(f64x4::ZERO);
         let time = meets.bitselect(c0 / (root - b) * (1.0 - ROUND), never);

@@ -119,7 +119,7 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
         let flight = self.world.flight(&self.model, particle);
         let flight = flight.advanced(now - body.since);
         // Growing grains are all predicted anew when the grid is.
-        let slot = &self.slots[particle as usize];
+        let slot = &self.slots[particle];
         let mut entry = slot.key(particle).time.min(self.regrid_at);
         if self.world.is_aloft(particle) {
             entry = entry.min(self.world.landing(particle));

@@ -21,6 +21,7 @@ use bed::Bed;
 pub(super) use saved::SavedNeighbours;
 
 use crate::engine::cells::{Cells, Found, Link};
+use crate::engine::sparse::Sparse;
 use crate::model::Boundary;
 use crate::particle::Vector;
 
@@ -62,7 +63,7 @@ struct Tie<const D: usize> {
 #[derive(Clone, Debug)]
 pub(super) struct Neighbours<const D: usize> {
     cells: Cells<D>,
-    ties: Vec<Tie<D>>,
+    ties: Sparse<Tie<D>>,
     /// Largest contact distance this was made for, in d.
     largest: f64,
     /// The long leash, in d.
@@ -89,7 +90,7 @@ impl<const D: usize> Neighbours<D> {
             rings: rings(&cells, reach),
             cells,
             longest: long * largest,
-            ties: positions.iter().map(|_| Tie::LOOSE).collect(),
+            ties: Sparse::new(positions.len(), Tie::LOOSE),
             largest,
             periods: std::array::from_fn(|axis| {
                 boundary.period(axis).map_or(0.0, |period| period.length)
@@ -102,7 +103,7 @@ impl<const D: usize> Neighbours<D> {
     /// Adds a grain at rest at a position.
     pub(super) fn add(&mut self, position: Vector<D>) {
         self.cells.add(&position);
-        self.ties.push(Tie::LOOSE);
+        self.ties.push();
     }
 
     /// Says how large a grain at rest may become as long as this grid serves, in
@@ -125,7 +126,7 @@ impl<const D: usize> Neighbours<D> {
     /// Reads where a grain is filed and how it is tied, to have that at hand.
     #[inline]
     pub(super) fn touch(&self, particle: u32) {
-        black_box(self.ties[particle as usize].leash);
+        black_box(self.ties[particle].leash);
         black_box(self.cells.spot(particle).reach);
         black_box(self.cells.turns(particle)[0]);
     }
@@ -133,7 +134,7 @@ impl<const D: usize> Neighbours<D> {
     /// The same for its list.
     #[inline]
     pub(super) fn touch_list(&self, particle: u32) {
-        let tie = &self.ties[particle as usize];
+        let tie = &self.ties[particle];
         // A cache line holds eight.
         for few in tie.list.chunks(8) {
             black_box(few[0]);
@@ -145,7 +146,7 @@ impl<const D: usize> Neighbours<D> {
 
     /// The list of a grain; empty if it is at rest.
     pub(super) fn list(&self, particle: u32) -> impl Iterator<Item = Found<D>> {
-        let list = self.ties[particle as usize].list.iter();
+        let list = self.ties[particle].list.iter();
         list.map(move |link| self.cells.found(particle, *link))
     }
 
@@ -156,14 +157,14 @@ impl<const D: usize> Neighbours<D> {
 
     /// Somebody on the list of a grain.
     pub(super) fn listed(&self, particle: u32, other: u32) -> Option<Link<D>> {
-        let mut list = self.ties[particle as usize].list.iter();
+        let mut list = self.ties[particle].list.iter();
         list.find(|link| link.particle() == other).copied()
     }
 
     /// The same, as it is kept.
     #[inline]
     pub(super) fn links(&self, particle: u32) -> &[Link<D>] {
-        &self.ties[particle as usize].list
+        &self.ties[particle].list
     }
 
     /// An link of a grain's list, in terms of where grains are stored.
@@ -214,15 +215,20 @@ impl<const D: usize> Neighbours<D> {
         self.cells.outside(position) > ESCAPE * self.largest
     }
 
+    /// Who has a list, in order.
+    pub(super) fn tied(&self) -> impl Iterator<Item = u32> {
+        self.ties.each().map(|(particle, _)| particle)
+    }
+
     /// Whether a grain has a list.
     pub(super) fn is_tied(&self, particle: u32) -> bool {
-        self.ties[particle as usize].leash > 0.0
+        self.ties.has(particle)
     }
 
     /// How far from its anchor a grain may go, in d.
     #[inline]
     pub(super) fn leash(&self, particle: u32) -> f64 {
-        ROUND * self.ties[particle as usize].leash
+        ROUND * self.ties[particle].leash
     }
 
     /// How far from its anchor a grain with a list, or one at rest, reaches as long
@@ -234,13 +240,13 @@ impl<const D: usize> Neighbours<D> {
     /// How far a grain may still move from `position`, in d; negative if too
     /// far already.
     pub(super) fn slack(&self, particle: u32, position: &Vector<D>) -> f64 {
-        let tie = &self.ties[particle as usize];
+        let tie = &self.ties[particle];
         ROUND * tie.leash - (position - self.anchor(particle)).norm_squared().sqrt()
     }
 
     /// Whether little enough slack is left to make the list anew.
     pub(super) fn is_stretched(&self, particle: u32, slack: f64) -> bool {
-        slack < 0.2 * self.ties[particle as usize].leash
+        slack < 0.2 * self.ties[particle].leash
     }
 
     /// Ties a moving grain to an anchor a little ahead of it and makes its list
@@ -252,7 +258,7 @@ impl<const D: usize> Neighbours<D> {
         velocity: &Vector<D>,
         radius: f64,
     ) {
-        if self.ties[particle as usize].leash == 0.0 {
+        if !self.ties.has(particle) {
             self.forget_at_rest(particle);
         }
         let speed = velocity.norm_squared().sqrt();
@@ -260,7 +266,7 @@ impl<const D: usize> Neighbours<D> {
         let image = self.cells.turns(particle);
         let mut list = std::mem::take(&mut self.fresh);
         loop {
-            let tie = &mut self.ties[particle as usize];
+            let tie = self.ties.make(particle);
             tie.leash = if tie.lonely { self.longest } else { short };
             let leash = tie.leash;
             // Half a unit of time ahead, but well within the leash.
@@ -272,7 +278,7 @@ impl<const D: usize> Neighbours<D> {
             let anchor = position + velocity * ahead;
             self.cells.refile(particle, &anchor, radius + leash);
             self.gather(particle, &mut list);
-            let tie = &mut self.ties[particle as usize];
+            let tie = self.ties.make(particle);
             if leash > short && list.len() > MANY {
                 tie.lonely = false;
                 continue;
@@ -280,10 +286,11 @@ impl<const D: usize> Neighbours<D> {
             tie.lonely |= list.len() <= FEW;
             break;
         }
-        let mut old = std::mem::take(&mut self.ties[particle as usize].list);
+        let mut old = std::mem::take(&mut self.ties.make(particle).list);
         for link in old.iter().filter(|link| !link.is_in(&list)) {
-            let tie = &mut self.ties[link.particle() as usize];
-            tie.forget(link.seen_from(particle));
+            if let Some(tie) = self.ties.own(link.particle()) {
+                tie.forget(link.seen_from(particle));
+            }
         }
         self.newcomers.clear();
         // Filed in another image, its links mean others than before.
@@ -295,8 +302,7 @@ impl<const D: usize> Neighbours<D> {
             if !turned {
                 self.newcomers.push(*link);
             }
-            let tie = &mut self.ties[link.particle() as usize];
-            if tie.leash > 0.0 {
+            if let Some(tie) = self.ties.own(link.particle()) {
                 tie.list.push(link.seen_from(particle));
                 tie.mover_changed();
             }
@@ -304,7 +310,7 @@ impl<const D: usize> Neighbours<D> {
         old.clear();
         old.extend_from_slice(&list);
         self.fresh = list;
-        let tie = &mut self.ties[particle as usize];
+        let tie = self.ties.make(particle);
         tie.list = old;
         tie.spoil();
     }
@@ -313,17 +319,17 @@ impl<const D: usize> Neighbours<D> {
     /// it on theirs, unless it has stopped out of their reach, where it would
     /// not find them again.
     pub(super) fn release(&mut self, particle: u32, position: &Vector<D>, radius: f64) {
-        let tie = &mut self.ties[particle as usize];
-        tie.leash = 0.0;
-        tie.bed = None;
-        tie.divided = false;
-        let list = std::mem::take(&mut tie.list);
+        let tied = self.ties.own(particle);
+        let list = tied.map_or_else(Vec::new, |tie| std::mem::take(&mut tie.list));
+        self.ties.clear(particle);
         let before = self.cells.turns(particle);
         self.cells.refile(particle, position, radius);
         let after = self.cells.turns(particle);
         let home = self.cells.spot(particle).home;
         for other in list {
-            let theirs = &mut self.ties[other.particle() as usize];
+            let Some(theirs) = self.ties.own(other.particle()) else {
+                continue;
+            };
             theirs.spoil();
             let mut turns = Link::<D>::turns_of(other.image());
             let mut apart = self.cells.spot(other.particle()).home - home;
@@ -338,7 +344,7 @@ impl<const D: usize> Neighbours<D> {
             if !within || image != other.image() {
                 theirs.forget(other.seen_from(particle));
             }
-            if within && image != other.image() && theirs.leash > 0.0 {
+            if within && image != other.image() {
                 let link = Link::new(other.particle(), image);
                 theirs.list.push(link.seen_from(particle));
             }
@@ -369,7 +375,7 @@ impl<const D: usize> Neighbours<D> {
     }
 
     fn rings_for(&self, particle: u32, distance: f64) -> i32 {
-        let spread = distance + self.ties[particle as usize].leash + self.longest;
+        let spread = distance + self.ties[particle].leash + self.longest;
         let rings = libm::ceil(spread / self.cells.least_edge());
         (rings.clamp(1.0, 1.0e6) as i32).min(self.cells.rings())
     }
@@ -395,7 +401,7 @@ impl<const D: usize> Neighbours<D> {
         let farthest = self.largest + self.longest;
         self.cells
             .for_each_in_reach(particle, self.rings, farthest, |link, _, squared| {
-                let leash = self.ties[link.particle() as usize].leash;
+                let leash = self.ties[link.particle()].leash;
                 // Farther off than this it is on nobody's list, see `release`.
                 let reach = self.largest + leash;
                 if leash > 0.0 && squared * ROUND < reach * reach {
@@ -403,9 +409,10 @@ impl<const D: usize> Neighbours<D> {
                 }
             });
         for link in partners {
-            let tie = &mut self.ties[link.particle() as usize];
-            tie.forget(link.seen_from(particle));
-            tie.spoil();
+            if let Some(tie) = self.ties.own(link.particle()) {
+                tie.forget(link.seen_from(particle));
+                tie.spoil();
+            }
         }
     }
 }

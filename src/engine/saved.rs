@@ -24,6 +24,7 @@ use crate::engine::settings::{Collapse, Settings};
 use crate::engine::setup::check_parts;
 use crate::engine::simulation::{Simulation, listed_scale};
 use crate::engine::slot::{Partner, Slot};
+use crate::engine::sparse::{SavedTable, Sparse};
 use crate::engine::speeds::Speeds;
 use crate::engine::transitions::{Alarm, Call};
 use crate::error::SetupError;
@@ -48,7 +49,7 @@ pub struct Saved<R, E, S, const D: usize> {
     masses: Vec<f64>,
     memories: Vec<R>,
     spins: Vec<S>,
-    slots: Vec<Slot>,
+    slots: SavedTable<Slot>,
     /// In the order in which they are due.
     alarms: Vec<Alarm<E>>,
     alarm_count: u64,
@@ -105,7 +106,7 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
             masses: self.world.masses.clone(),
             memories: self.memories.clone(),
             spins: self.spins.clone(),
-            slots: self.slots.clone(),
+            slots: self.slots.save(),
             alarms,
             alarm_count: self.alarm_count,
             leaning: self.leaning.save(),
@@ -148,10 +149,11 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
             let flight = flight_of(&model, id as u32, body);
             body.still = body.mode.is_static() && flight.is_at_rest();
         }
+        let slots = Sparse::restore(saved.slots, count, Slot::EMPTY).map_err(wrong)?;
         let mut queue = EventQueue::new(count, saved.clock);
-        for (id, slot) in saved.slots.iter().enumerate() {
+        for id in 0..count as u32 {
             queue.push_empty();
-            queue.set(id as u32, slot.key(id as u32));
+            queue.set(id, slots[id].key(id));
         }
         let mut restored = Simulation {
             settings: saved.settings,
@@ -164,13 +166,13 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
                 largest: saved.largest,
                 ledger: saved.ledger,
                 blur: saved.blur,
-                glances: Glances::new(saved.epoch),
+                glances: Glances::new(count, saved.epoch),
                 aloft: Aloft::nobody(),
             },
             epoch_events: saved.epoch_events,
             memories: saved.memories,
             spins: saved.spins,
-            slots: saved.slots,
+            slots,
             queue,
             alarms: saved.alarms.into_iter().map(Reverse).collect(),
             alarm_count: saved.alarm_count,
@@ -193,7 +195,7 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
         restored.restore_aloft(saved.aloft).map_err(wrong)?;
         restored.world.begin_epoch(&restored.model, saved.epoch);
         for id in 0..count as u32 {
-            let bound = restored.slots[id as usize].bound();
+            let bound = restored.slots[id].bound();
             restored.world.glances.set_bound(id, bound);
             restored.world.keep_blur(&restored.model, id);
             restored.check_grain(id).map_err(wrong)?;
@@ -218,13 +220,8 @@ impl<R, E, S, const D: usize> Saved<R, E, S, D> {
         if count > i32::MAX as usize {
             return Err(wrong("more grains than can be named"));
         }
-        let lengths = [
-            self.masses.len(),
-            self.memories.len(),
-            self.spins.len(),
-            self.slots.len(),
-        ];
-        if lengths != [count; 4] {
+        let lengths = [self.masses.len(), self.memories.len(), self.spins.len()];
+        if lengths != [count; 3] {
             return Err(wrong("something is there for some grains only"));
         }
         if !self.clock.is_finite() || self.clock < self.settings.start {
@@ -240,10 +237,10 @@ impl<R, E, S, const D: usize> Saved<R, E, S, D> {
         if let Some(reason) = self.traces.misfit(guards, count, is_there) {
             return Err(wrong(reason));
         }
+        if !self.slots.entries().all(|slot| is_there(slot.partner)) {
+            return Err(wrong("a grain is to meet nobody"));
+        }
         for id in 0..count {
-            if !is_there(self.slots[id].partner) {
-                return Err(wrong(format!("grain {id} is to meet nobody")));
-            }
             if let Some(reason) = self.misfit(id, model) {
                 return Err(wrong(format!("grain {id} {reason}")));
             }

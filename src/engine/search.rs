@@ -32,12 +32,11 @@ const MOST_STEPS: usize = 16;
 impl<M: Model<D>, const D: usize> Simulation<M, D> {
     /// Finds what lies ahead of a grain whose state has just changed, or whose
     /// foreseen contact has lost its partner.
+    #[inline]
     pub(super) fn predict(&mut self, particle: u32) {
-        let slot = &mut self.slots[particle as usize];
-        slot.contact = Time::NEVER;
-        slot.partner = Partner::Nobody;
-        if self.world.bodies[particle as usize].mode.is_static() {
-            slot.sleep = Time::NEVER;
+        if let Some(slot) = self.slots.own(particle) {
+            slot.contact = Time::NEVER;
+            slot.partner = Partner::Nobody;
         }
         self.predict_listed(particle);
     }
@@ -93,7 +92,7 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
     }
 
     pub(super) fn enqueue(&mut self, particle: u32) {
-        let slot = &self.slots[particle as usize];
+        let slot = &self.slots[particle];
         let key = slot.key(particle);
         self.world.glances.set_bound(particle, slot.bound());
         self.queue.set(particle, key);
@@ -119,18 +118,19 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
     /// it did.
     #[inline]
     pub(super) fn meet(&mut self, particle: u32, other: &Found<D>) -> bool {
-        let until = self.slots[particle as usize].contact;
+        let until = self.slots[particle].contact;
         let Some(time) = self.pair_contact(particle, other.particle, other.turns, until) else {
             return false;
         };
-        let slot = self.slots[particle as usize];
-        let partner = Partner::Particle(other.particle);
-        let first = contact_key(particle, time, partner) < slot.contact_key(particle);
-        if !first || time > self.slots[other.particle as usize].bound() {
+        if time > self.slots[other.particle].bound() {
             return false;
         }
+        let partner = Partner::Particle(other.particle);
         let partner_stamp = self.world.bodies[other.particle as usize].stamp;
-        let slot = &mut self.slots[particle as usize];
+        let slot = self.slots.make(particle);
+        if contact_key(particle, time, partner) >= slot.contact_key(particle) {
+            return false;
+        }
         slot.contact = time;
         slot.partner = partner;
         slot.partner_stamp = partner_stamp;
@@ -142,13 +142,13 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
         let mut nearer = false;
         for wall in 0..self.model.boundary().walls().len() {
             let wall = WallId(wall as u16);
-            let slot = self.slots[particle as usize];
+            let slot = self.slots[particle];
             let Some(time) = self.wall_contact(particle, wall, slot.contact) else {
                 continue;
             };
             let partner = Partner::Wall(wall);
             if contact_key(particle, time, partner) < slot.contact_key(particle) {
-                let slot = &mut self.slots[particle as usize];
+                let slot = self.slots.make(particle);
                 slot.contact = time;
                 slot.partner = partner;
                 nearer = true;
@@ -316,16 +316,23 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
     pub(super) fn find_renewal(&mut self, particle: u32) {
         let flight = self.world.flight(&self.model, particle);
         if self.world.is_aloft(particle) {
-            self.slots[particle as usize].renewal = self.world.next_landing(particle);
+            let landing = self.world.next_landing(particle);
+            // Nearly all of them have nothing to wait for.
+            if landing.is_finite() || self.slots.has(particle) {
+                self.slots.make(particle).renewal = landing;
+            }
             return;
         }
-        let slot = &mut self.slots[particle as usize];
-        slot.renewal = Time::NEVER;
+        let mut bound = Time::NEVER;
+        if let Some(slot) = self.slots.own(particle) {
+            slot.renewal = Time::NEVER;
+            bound = slot.bound();
+        }
         if flight.is_at_rest() {
             return;
         }
         let now = self.world.clock;
-        let known = slot.bound() - now;
+        let known = bound - now;
         let flight = flight.advanced(now - self.world.bodies[particle as usize].since);
         let near = &self.world.near;
         let anchor = near.anchor(particle);
@@ -334,7 +341,7 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
             None => stepped(near, particle, &flight, known),
         };
         if certain <= known {
-            slot.renewal = now + certain;
+            self.slots.make(particle).renewal = now + certain;
         }
     }
 }

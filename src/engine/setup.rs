@@ -15,6 +15,7 @@ use crate::engine::queue::EventQueue;
 use crate::engine::settings::Settings;
 use crate::engine::simulation::Simulation;
 use crate::engine::slot::{Partner, Slot};
+use crate::engine::sparse::Sparse;
 use crate::engine::speeds::Speeds;
 use crate::engine::walls::{check_distance, check_walls};
 use crate::error::SetupError;
@@ -91,13 +92,13 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
                 largest,
                 ledger: Ledger::default(),
                 blur: 0.0,
-                glances: Glances::new(settings.start),
+                glances: Glances::new(count, settings.start),
                 aloft: Aloft::nobody(),
             },
             epoch_events: 0,
             memories: vec![MemoryOf::<M, D>::default(); count],
             spins: vec![SpinOf::<M, D>::default(); count],
-            slots: vec![Slot::EMPTY; count],
+            slots: Sparse::new(count, Slot::EMPTY),
             queue: EventQueue::new(count, settings.start),
             alarms: BinaryHeap::new(),
             alarm_count: 0,
@@ -160,10 +161,10 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
         self.store(particle);
         let position = self.world.bodies[index as usize].position;
         self.world.near.add(position);
-        self.world.glance(&self.model, index);
+        self.world.glances.add();
         self.memories.push(MemoryOf::<M, D>::default());
         self.spins.push(SpinOf::<M, D>::default());
-        self.slots.push(Slot::EMPTY);
+        self.slots.push();
         if let Err(error) = self.refuse_contacts(index) {
             self.forget_last();
             self.world.blur = blur;

@@ -13,6 +13,7 @@ use crate::engine::neighbours::Neighbours;
 use crate::engine::queue::EventQueue;
 use crate::engine::settings::{Collapse, Settings};
 use crate::engine::slot::Slot;
+use crate::engine::sparse::Sparse;
 use crate::engine::speeds::Speeds;
 use crate::engine::transitions::Alarm;
 use crate::model::{Boundary, Commands, Dynamics, EventOf, Flight, MemoryOf, Model, SpinOf};
@@ -28,7 +29,7 @@ pub struct Simulation<M: Model<D>, const D: usize> {
     pub(super) world: World<D>,
     pub(super) memories: Vec<MemoryOf<M, D>>,
     pub(super) spins: Vec<SpinOf<M, D>>,
-    pub(super) slots: Vec<Slot>,
+    pub(super) slots: Sparse<Slot>,
     pub(super) queue: EventQueue,
     pub(super) alarms: BinaryHeap<Reverse<Alarm<EventOf<M, D>>>>,
     pub(super) alarm_count: u64,
@@ -173,7 +174,7 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
     pub(super) fn begin_epoch(&mut self) {
         self.epoch_events = self.counts.total();
         self.world.begin_epoch(&self.model, self.world.clock);
-        for (particle, slot) in (0..).zip(&self.slots) {
+        for (particle, slot) in self.slots.each() {
             self.world.glances.set_bound(particle, slot.bound());
         }
     }
@@ -216,7 +217,7 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
             &flight.velocity(after),
             scale * body.radius,
         );
-        if near.turns(particle) != image {
+        if loose || near.turns(particle) != image {
             self.world.glance(&self.model, particle);
         }
         if loose {

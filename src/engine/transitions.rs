@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 use crate::engine::ledger::Entry;
 use crate::engine::queue::{Key, Rank};
 use crate::engine::simulation::Simulation;
-use crate::engine::slot::{Partner, Slot};
+use crate::engine::slot::Partner;
 use crate::engine::view::View;
 use crate::model::{
     Dynamics, EventOf, Flight, Model, Observer, Occurrence, OccurrenceKind, Reason, Response,
@@ -82,7 +82,7 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
             .write(model, particle, state.position, rest, Mode::Frozen);
         self.world
             .note_change(Entry::Sleep, particle, &state.velocity, &rest);
-        self.slots[particle as usize] = Slot::EMPTY;
+        self.slots.clear(particle);
         self.traces[particle as usize].partner = Partner::Nobody;
         // Ground that moves may be faster than the grain was.
         self.note_speed(particle);

@@ -70,13 +70,13 @@ fn faults_of_the_queue_are_seen() {
     let mover = one(&sound, Mode::Normal);
 
     let mut heap = heap();
-    heap.slots[mover as usize].contact = heap.world.clock + 1.0e-9;
-    heap.slots[mover as usize].partner = Partner::Particle(0);
+    heap.slots.make(mover).contact = heap.world.clock + 1.0e-9;
+    heap.slots.make(mover).partner = Partner::Particle(0);
     seen(&heap, " is filed ");
 
     let mut heap = sound;
     let slots = heap.slots.clone();
-    let known = |particle: u32| slots[particle as usize].key(particle);
+    let known = |particle: u32| slots[particle].key(particle);
     let (first, soonest) = heap.queue.peek(known).unwrap();
     let mut late = soonest;
     late.time = soonest.time + 1.0;
@@ -93,20 +93,20 @@ fn faults_of_entries_are_seen() {
     let (mover, sleeper) = (one(&sound, Mode::Normal), one(&sound, Mode::Frozen));
 
     let mut late = heap();
-    late.slots[mover as usize].sleep = Time::ZERO;
+    late.slots.make(mover).sleep = Time::ZERO;
     seen(&late, "was due at");
 
     let mut lonely = heap();
-    lonely.slots[mover as usize].contact = lonely.world.clock + 1.0;
-    lonely.slots[mover as usize].partner = Partner::Nobody;
+    lonely.slots.make(mover).contact = lonely.world.clock + 1.0;
+    lonely.slots.make(mover).partner = Partner::Nobody;
     seen(&lonely, "meets nobody");
-    lonely.slots[mover as usize].partner = Partner::Particle(mover);
+    lonely.slots.make(mover).partner = Partner::Particle(mover);
     seen(&lonely, "meets itself");
-    lonely.slots[mover as usize].partner = Partner::Particle(99);
+    lonely.slots.make(mover).partner = Partner::Particle(99);
     seen(&lonely, "who is not there");
 
     let mut restless = heap();
-    restless.slots[sleeper as usize].sleep = restless.world.clock + 1.0;
+    restless.slots.make(sleeper).sleep = restless.world.clock + 1.0;
     seen(&restless, "is static and waits");
 }
 
@@ -211,16 +211,14 @@ fn an_audit_sees_what_is_missed() {
     let mut heap = heap();
     assert_eq!(heap.audit().missed, []);
     let meeting = |heap: &Heap| {
-        let slots = heap.slots.iter();
-        let mut meeting = slots
-            .enumerate()
-            .filter(|(_, slot)| slot.contact < slot.renewal);
-        meeting.next().map(|(id, slot)| (id as u32, slot.partner))
+        let mut slots = heap.slots.each();
+        let meeting = slots.find(|(_, slot)| slot.contact < slot.renewal);
+        meeting.map(|(id, slot)| (id, slot.partner))
     };
     let (mover, partner) = meeting(&heap).unwrap();
     // Whoever it meets does not know of it either.
     for id in 0..heap.slots.len() as u32 {
-        let slot = &mut heap.slots[id as usize];
+        let slot = heap.slots.make(id);
         if id == mover || partner == Partner::Particle(id) || slot.partner == partner {
             slot.contact = Time::NEVER;
             slot.partner = Partner::Nobody;

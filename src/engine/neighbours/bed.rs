@@ -127,8 +127,9 @@ impl<const D: usize> Neighbours<D> {
     /// Sees to it that the [bed](Self::bed) of a grain is that of its list.
     #[inline]
     pub(in crate::engine) fn make_bed(&mut self, particle: u32, bodies: &[Body<D>]) {
-        let tie = &mut self.ties[particle as usize];
-        if !tie.divided {
+        if let Some(tie) = self.ties.own(particle)
+            && !tie.divided
+        {
             tie.divide(particle, &self.periods, &self.cells, bodies);
         }
     }
@@ -136,7 +137,7 @@ impl<const D: usize> Neighbours<D> {
     /// Those at rest on the list of a grain, if anybody is, and those that move.
     #[inline]
     pub(in crate::engine) fn bed(&self, particle: u32) -> (Option<&Bed<D>>, &[Link<D>]) {
-        let tie = &self.ties[particle as usize];
+        let tie = &self.ties[particle];
         match &tie.bed {
             Some(bed) => (Some(bed), &bed.movers),
             None => (None, &tie.list),
@@ -149,7 +150,7 @@ impl<const D: usize> Neighbours<D> {
         particle: u32,
         bodies: &[Body<D>],
     ) -> Result<(), String> {
-        let tie = &self.ties[particle as usize];
+        let tie = &self.ties[particle];
         let Some(bed) = tie.bed.as_ref().filter(|_| tie.divided) else {
             return Ok(());
         };

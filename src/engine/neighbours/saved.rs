@@ -4,6 +4,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::engine::cells::{Cells, Link, SavedCells};
 use crate::engine::neighbours::{Neighbours, Tie};
+use crate::engine::sparse::Sparse;
 use crate::model::Boundary;
 use crate::particle::Vector;
 
@@ -29,19 +30,19 @@ struct SavedTie<const D: usize> {
 
 impl<const D: usize> Neighbours<D> {
     pub(in crate::engine) fn save(&self) -> SavedNeighbours<D> {
-        let of = |(particle, tie): (usize, &Tie<D>)| SavedTie {
-            home: self.cells.spot(particle as u32).home,
-            leash: tie.leash,
-            lonely: tie.lonely,
-            list: tie
-                .list
-                .iter()
-                .map(|link| (link.particle(), link.image()))
-                .collect(),
+        let of = |particle: u32| {
+            let tie = &self.ties[particle];
+            let named = |link: &Link<D>| (link.particle(), link.image());
+            SavedTie {
+                home: self.cells.spot(particle).home,
+                leash: tie.leash,
+                lonely: tie.lonely,
+                list: tie.list.iter().map(named).collect(),
+            }
         };
         SavedNeighbours {
             cells: self.cells.save(),
-            ties: self.ties.iter().enumerate().map(of).collect(),
+            ties: (0..self.ties.len() as u32).map(of).collect(),
             largest: self.largest,
             longest: self.longest,
         }
@@ -63,8 +64,8 @@ impl<const D: usize> Neighbours<D> {
         if saved.ties.len() != count || !positive(saved.largest) || !positive(saved.longest) {
             return Err("the lists are not those of these grains");
         }
-        let mut ties = Vec::with_capacity(count);
-        for (particle, tie) in saved.ties.iter().enumerate() {
+        let mut ties = Sparse::new(count, Tie::LOOSE);
+        for (particle, tie) in (0..).zip(&saved.ties) {
             if !(tie.leash >= 0.0 && tie.leash.is_finite())
                 || tie.home.iter().any(|x| !x.is_finite())
             {
@@ -72,19 +73,22 @@ impl<const D: usize> Neighbours<D> {
             }
             let mut list = Vec::with_capacity(tie.list.len());
             for &(other, image) in &tie.list {
-                let is_there = (other as usize) < count && other as usize != particle;
+                let is_there = (other as usize) < count && other != particle;
                 if !is_there {
                     return Err("a list names nobody");
                 }
                 list.push(Link::new(other, image));
             }
-            ties.push(Tie {
-                leash: tie.leash,
-                lonely: tie.lonely,
-                list,
-                bed: None,
-                divided: false,
-            });
+            if tie.leash > 0.0 {
+                *ties.make(particle) = Tie {
+                    leash: tie.leash,
+                    lonely: tie.lonely,
+                    list,
+                    ..Tie::LOOSE
+                };
+            } else if !list.is_empty() {
+                return Err("a grain at rest has a list");
+            }
         }
         let mut cells = Cells::restore(boundary, &saved.cells, count)?;
         for (particle, tie) in (0..).zip(&saved.ties) {
@@ -110,16 +114,12 @@ impl<const D: usize> Neighbours<D> {
         Ok(neighbours)
     }
 
-    /// Whether grains that move are on the lists of those on their own, and
-    /// nobody at rest has a list.
+    /// Whether grains that move are on the lists of those on their own.
     fn are_mutual(&self) -> bool {
-        self.ties.iter().enumerate().all(|(particle, tie)| {
-            if tie.leash == 0.0 {
-                return tie.list.is_empty();
-            }
+        self.ties.each().all(|(particle, tie)| {
             tie.list.iter().all(|link| {
-                let theirs = &self.ties[link.particle() as usize];
-                theirs.leash == 0.0 || theirs.list.contains(&link.seen_from(particle as u32))
+                let theirs = &self.ties[link.particle()];
+                theirs.leash == 0.0 || theirs.list.contains(&link.seen_from(particle))
             })
         })
     }
