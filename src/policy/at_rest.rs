@@ -83,10 +83,7 @@ impl<C> AtRest<C> {
     }
 
     fn check(&self) -> Option<Check<'_>> {
-        self.self_check.as_ref().map(|rules| Check {
-            rules,
-            walls_count: self.wall_supports,
-        })
+        Check::of(self.self_check.as_ref(), self.wall_supports)
     }
 
     /// What a sleeper starts with if it wakes now.

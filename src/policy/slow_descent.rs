@@ -11,7 +11,7 @@ use crate::model::{
     Commands, Impact, Obstacle, Place, Reason, Response, SleepDecision, StatePolicy, Surroundings,
     WakeCause, WakeDecision, Waking,
 };
-use crate::particle::{ParticleId, Vector};
+use crate::particle::{Particle, ParticleId, Vector};
 use crate::policy::asleep::Asleep;
 use crate::policy::supports::{Check, CheckDue, Kept, SelfCheck};
 use crate::time::Time;
@@ -101,10 +101,7 @@ impl SlowDescent {
     }
 
     fn check(&self) -> Option<Check<'_>> {
-        self.self_check.as_ref().map(|rules| Check {
-            rules,
-            walls_count: self.wall_supports,
-        })
+        Check::of(self.self_check.as_ref(), self.wall_supports)
     }
 
     /// What a sleeper gets back if it wakes now.
@@ -130,6 +127,17 @@ impl SlowDescent {
             },
             _ => Waking::with_velocity(ground),
         }
+    }
+
+    /// The same for one that has lost a support.
+    fn woken_by_check<const D: usize, S: Surroundings<D>>(
+        &self,
+        memory: &Remembered<D>,
+        near: &S,
+        grain: &Particle<D>,
+    ) -> Waking<D> {
+        let (now, gravity) = (near.time(), near.gravity());
+        self.given_back(memory, now, &gravity, grain.velocity, grain.mass)
     }
 
     fn is_on_support<const D: usize>(&self, impact: &Impact<D>) -> bool {
@@ -365,8 +373,7 @@ impl<const D: usize> StatePolicy<D> for SlowDescent {
     ) -> Response<D> {
         let kept = &memory.supports;
         kept.go_on(self.check(), event, id, near, commands, |grain| {
-            let (now, gravity) = (near.time(), near.gravity());
-            self.given_back(memory, now, &gravity, grain.velocity, grain.mass)
+            self.woken_by_check(memory, near, grain)
         })
     }
 
@@ -380,8 +387,7 @@ impl<const D: usize> StatePolicy<D> for SlowDescent {
     ) -> Response<D> {
         let kept = &memory.supports;
         kept.answer(self.check(), id, near, |grain| {
-            let (now, gravity) = (near.time(), near.gravity());
-            self.given_back(memory, now, &gravity, grain.velocity, grain.mass)
+            self.woken_by_check(memory, near, grain)
         })
     }
 }

@@ -172,9 +172,16 @@ impl SelfCheck {
 /// The self-check of a policy.
 #[derive(Clone, Copy)]
 pub(super) struct Check<'a> {
-    pub(super) rules: &'a SelfCheck,
+    rules: &'a SelfCheck,
     /// Whether walls are supports.
-    pub(super) walls_count: bool,
+    walls_count: bool,
+}
+
+impl<'a> Check<'a> {
+    /// That of a policy with such rules, if it has any.
+    pub(super) fn of(rules: Option<&'a SelfCheck>, walls_count: bool) -> Option<Self> {
+        rules.map(|rules| Check { rules, walls_count })
+    }
 }
 
 impl Deref for Check<'_> {
