@@ -157,13 +157,8 @@ impl SelfCheck {
         match self.phase {
             Phase::Spread { .. } | Phase::Own => self.interval,
             Phase::Global => {
-                let passed = libm::floor(now.units() / self.interval);
-                let next = Time::from_units((passed + 1.0) * self.interval);
-                if next > now {
-                    next - now
-                } else {
-                    Time::from_units((passed + 2.0) * self.interval) - now
-                }
+                let next = now.multiples_reached(self.interval) + 1.0;
+                Time::from_units(next * self.interval) - now
             }
         }
     }

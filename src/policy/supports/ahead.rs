@@ -153,11 +153,7 @@ fn leaves_after<const D: usize>(
     };
     // At the first step that turns it as far.
     let steps = libm::ceil(angle / (rate.abs() * step) - ROUND).max(1.0);
-    let made = libm::floor(now.units() / step);
-    let at = |count: f64| Time::from_units((made + count) * step);
-    // The quotient may be too small by one.
-    let past = if at(1.0) <= now { 1.0 } else { 0.0 };
-    at(steps + past) - now
+    Time::from_units((now.multiples_reached(step) + steps) * step) - now
 }
 
 #[cfg(test)]
