@@ -13,7 +13,7 @@ use serde::{Deserialize, Serialize};
 use crate::error::SetupError;
 #[cfg(doc)]
 use crate::model::GravityCourse;
-use crate::model::{Commands, Reason, Surroundings};
+use crate::model::{Commands, Reason, SHORTEST_WAIT, Surroundings};
 use crate::particle::{Mode, ParticleId, Vector};
 use crate::time::Time;
 pub(super) use kept::Kept;
@@ -93,7 +93,7 @@ impl Default for SelfCheck {
 impl SelfCheck {
     pub(super) fn validate(&self) -> Result<(), SetupError> {
         // Shorter intervals would check without end at one instant.
-        if !(self.interval >= 1.0e-9 && self.interval.is_finite()) {
+        if !(self.interval >= SHORTEST_WAIT && self.interval.is_finite()) {
             return Err(SetupError::Parameter {
                 field: "self_check.interval",
                 value: self.interval,
