@@ -1,8 +1,8 @@
 //! What a scenario file may say: one schema for TOML and JSON.
 
 mod conditions;
-mod criteria;
 mod gravity;
+mod named_parameters;
 mod numbering;
 mod parameters;
 mod rotation;
@@ -10,8 +10,8 @@ mod sleep;
 mod sources;
 
 pub use conditions::{Output, Stop};
-pub use criteria::{Criteria, OwnParts};
 pub use gravity::Gravity;
+pub use named_parameters::NamedParameters;
 pub use numbering::Numbering;
 pub use parameters::{Guards, Parameters, Threshold};
 pub use rotation::{Rotation, Turns};
@@ -64,12 +64,14 @@ pub struct Scenario {
     /// How exactly grains fall asleep and wake; the defaults are the model.
     #[serde(default)]
     pub sleep: Sleep,
-    /// Parameters of sleep criteria other than the paper's, by name.
-    #[serde(default, skip_serializing_if = "Criteria::is_empty")]
-    pub criteria: Criteria,
+    /// Parameters of sleep criteria other than the paper's, by name. Those of the one
+    /// that `sleep.criterion` names count.
+    #[serde(default, skip_serializing_if = "NamedParameters::is_empty")]
+    #[schemars(schema_with = "named_parameters::of_criteria")]
+    pub criteria: NamedParameters,
     /// Parameters of parts of one's own, by name: only for programs that have such.
-    #[serde(default, skip_serializing_if = "OwnParts::is_empty")]
-    pub parts: OwnParts,
+    #[serde(default, skip_serializing_if = "NamedParameters::is_empty")]
+    pub parts: NamedParameters,
     /// Sleeping grains check at intervals whether they are still supported.
     /// Left out: they don't.
     #[serde(default, skip_serializing_if = "Option::is_none")]
