@@ -1,4 +1,5 @@
-use std::fmt;
+use std::path::Path;
+use std::{fmt, fs, io};
 
 use serde::{Deserialize, Serialize};
 
@@ -31,6 +32,28 @@ impl StoppedBy {
             StoppedBy::AllFrozen | StoppedBy::Time | StoppedBy::Events => true,
             StoppedBy::Collapse | StoppedBy::Interrupted | StoppedBy::Error => false,
         }
+    }
+}
+
+/// Where summaries stand in the folders of runs.
+const FILE: &str = "summary.json";
+
+/// When and why a run ended: what `summary.json` says whatever the version of the
+/// program, which may count other things than this one.
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
+pub struct Ending {
+    /// When, in √(d/g).
+    pub time: f64,
+    /// Why.
+    pub stop_reason: StoppedBy,
+}
+
+impl Ending {
+    /// That of the run in a folder; `None` if it has left none that can be read.
+    #[must_use]
+    pub fn of(folder: &Path) -> Option<Self> {
+        let text = fs::read(folder.join(FILE)).ok()?;
+        serde_json::from_slice(&text).ok()
     }
 }
 
@@ -81,6 +104,18 @@ pub struct Summary {
     pub version: String,
 }
 
+impl Summary {
+    /// That of the run in a folder.
+    ///
+    /// # Errors
+    ///
+    /// When it cannot be read, or lacks what this version of the program wants to know.
+    pub fn of(folder: &Path) -> io::Result<Self> {
+        let text = fs::read(folder.join(FILE))?;
+        serde_json::from_slice(&text).map_err(io::Error::other)
+    }
+}
+
 /// A collapse.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct CollapseReport {
@@ -117,7 +152,9 @@ pub struct EventCounts {
     pub sleep: u64,
     /// Self-checks made.
     pub check: u64,
-    /// Times a sleeper was asked since a grain that it leans on had changed.
+    /// Times a sleeper was asked since a grain that it leans on had changed. Programs
+    /// that did not count it asked nobody.
+    #[serde(default)]
     pub support: u64,
     /// Of both, those that woke a grain.
     pub check_wake: u64,

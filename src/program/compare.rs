@@ -116,9 +116,8 @@ fn row_of(
     let scenario = read_text(&origin).map_err(ScenarioError::from)?;
     let text = fs::read(&file).map_err(ProgramError::io(file.display().to_string()))?;
     let ended = folder.file("summary.json");
-    let summary = fs::read_to_string(&ended)
-        .and_then(|text| serde_json::from_str::<Summary>(&text).map_err(std::io::Error::other));
-    let summary = summary.map_err(ProgramError::io(ended.display().to_string()))?;
+    let summary =
+        Summary::of(folder.path()).map_err(ProgramError::io(ended.display().to_string()))?;
     let job = Job {
         origin,
         scenario,

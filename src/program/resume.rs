@@ -3,7 +3,7 @@
 use std::fs;
 use std::io;
 
-use crate::output::{Checkpoint, CheckpointError, RunFolder, StoppedBy, Summary};
+use crate::output::{Checkpoint, CheckpointError, Ending, RunFolder, StoppedBy};
 use crate::program::cli::ResumeArguments;
 use crate::program::criteria::Program;
 use crate::program::drive::{Attempt, Job, Options};
@@ -144,9 +144,7 @@ fn access(folder: &RunFolder, name: &str) -> impl FnOnce(io::Error) -> ProgramEr
 
 /// Why a run came to its end, if it did of its own.
 fn finished(folder: &RunFolder) -> Option<&'static str> {
-    let text = fs::read_to_string(folder.file("summary.json")).ok()?;
-    let summary: Summary = serde_json::from_str(&text).ok()?;
-    match summary.stop_reason {
+    match Ending::of(folder.path())?.stop_reason {
         StoppedBy::AllFrozen => Some("all grains are at rest"),
         StoppedBy::Time => Some("the time is up"),
         StoppedBy::Events => Some("the number of events is reached, or none is left"),

@@ -13,7 +13,7 @@ use serde::Serialize;
 use crate::boundary::Cuboid;
 use crate::engine::Answer;
 use crate::model::Model;
-use crate::output::{Checkpoint, RunFolder, Summary};
+use crate::output::{Checkpoint, Ending, RunFolder};
 use crate::particle::{Mode, ParticleId};
 use crate::program::criteria::Program;
 use crate::program::drive::{Job, Options, Replay};
@@ -145,20 +145,15 @@ pub(super) fn why(arguments: &WhyArguments, program: &Program) -> Result<u8, Pro
         text,
         options: Options::default(),
     };
-    let time = arguments.time.or_else(|| ended(&job.folder));
+    let time = arguments
+        .time
+        .or_else(|| Some(Ending::of(job.folder.path())?.time));
     let question = Question {
         particle: ParticleId(arguments.particle),
         time: time.map_or(Time::NEVER, Time::from_units),
     };
     let report = answer(&job, program, question)?;
     say_result(&report, arguments.json).map(|()| 0)
-}
-
-/// When a run ended.
-fn ended(folder: &RunFolder) -> Option<f64> {
-    let text = fs::read_to_string(folder.file("summary.json")).ok()?;
-    let summary: Summary = serde_json::from_str(&text).ok()?;
-    Some(summary.time)
 }
 
 /// From the newest checkpoint that is not later than the question, else from the
