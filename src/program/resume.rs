@@ -36,6 +36,28 @@ pub(super) fn resume(arguments: &ResumeArguments, program: &Program) -> Result<u
     }
 }
 
+impl Job {
+    /// The run that was begun in a folder, as its `scenario.toml` says.
+    pub(super) fn begun(
+        folder: RunFolder,
+        options: Options,
+        program: &Program,
+    ) -> Result<Self, ProgramError> {
+        let file = folder.file("scenario.toml");
+        let mut origin = Origin::open(&file)?;
+        program.acquaint_run(&mut origin);
+        let scenario = read_text(&origin).map_err(ScenarioError::from)?;
+        let text = fs::read(&file).map_err(access(&folder, "scenario.toml"))?;
+        Ok(Job {
+            origin,
+            scenario,
+            folder,
+            text,
+            options,
+        })
+    }
+}
+
 /// What has become of a run that was begun earlier.
 pub(super) enum Continued {
     /// It had come to its end, and why.
@@ -58,18 +80,7 @@ pub(super) fn continued(
         Checkpoint::clear(&folder).map_err(access(&folder, "checkpoint"))?;
         return Ok(Continued::Finished(reason));
     }
-    let file = folder.file("scenario.toml");
-    let mut origin = Origin::open(&file)?;
-    program.acquaint_run(&mut origin);
-    let scenario = read_text(&origin).map_err(ScenarioError::from)?;
-    let text = fs::read(&file).map_err(access(&folder, "scenario.toml"))?;
-    let job = Job {
-        origin,
-        scenario,
-        folder,
-        text,
-        options,
-    };
+    let job = Job::begun(folder, options, program)?;
     newest_good(&job, program.runner(&job.scenario), signals).map(Continued::Ended)
 }
 

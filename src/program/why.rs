@@ -6,7 +6,6 @@ mod contacts;
 pub(super) use arguments::WhyArguments;
 
 use std::fmt;
-use std::fs;
 
 use serde::Serialize;
 
@@ -21,7 +20,7 @@ use crate::program::error::ProgramError;
 use crate::program::runner::Task;
 use crate::program::show::say_result;
 use crate::program::why::contacts::{Contact, contacts};
-use crate::scenario::{Origin, ScenarioError, Start, read_text};
+use crate::scenario::Start;
 use crate::time::Time;
 
 /// The program's answer about a grain.
@@ -133,18 +132,7 @@ pub(super) struct Question {
 
 pub(super) fn why(arguments: &WhyArguments, program: &Program) -> Result<u8, ProgramError> {
     let folder = RunFolder::open(&arguments.folder)?;
-    let file = folder.file("scenario.toml");
-    let mut origin = Origin::open(&file)?;
-    program.acquaint_run(&mut origin);
-    let scenario = read_text(&origin).map_err(ScenarioError::from)?;
-    let text = fs::read(&file).map_err(ProgramError::io(file.display().to_string()))?;
-    let job = Job {
-        origin,
-        scenario,
-        folder,
-        text,
-        options: Options::default(),
-    };
+    let job = Job::begun(folder, Options::default(), program)?;
     let time = arguments
         .time
         .or_else(|| Some(Ending::of(job.folder.path())?.time));
