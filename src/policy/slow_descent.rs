@@ -13,6 +13,7 @@ use crate::model::{
 };
 use crate::particle::{Particle, ParticleId, Vector};
 use crate::policy::asleep::Asleep;
+use crate::policy::parameters::{fraction, not_negative};
 use crate::policy::supports::{Check, CheckDue, Kept, SelfCheck};
 use crate::time::Time;
 
@@ -192,28 +193,10 @@ impl<const D: usize> StatePolicy<D> for SlowDescent {
     type Event = CheckDue;
 
     fn validate(&self) -> Result<(), SetupError> {
-        let positive = [
-            ("sleep_speed", self.sleep_speed),
-            ("wake_speed", self.wake_speed),
-            ("store_time", self.store_time.unwrap_or(0.0)),
-        ];
-        for (field, value) in positive {
-            // NaN is refused, infinity is not.
-            if value.is_nan() || value < 0.0 {
-                return Err(SetupError::Parameter {
-                    field,
-                    value,
-                    allowed: "0 or more is allowed",
-                });
-            }
-        }
-        if !(0.0..=1.0).contains(&self.frozen_restitution) {
-            return Err(SetupError::Parameter {
-                field: "frozen_restitution",
-                value: self.frozen_restitution,
-                allowed: "0 … 1 is allowed",
-            });
-        }
+        not_negative("sleep_speed", self.sleep_speed)?;
+        not_negative("wake_speed", self.wake_speed)?;
+        not_negative("store_time", self.store_time.unwrap_or(0.0))?;
+        fraction("frozen_restitution", self.frozen_restitution)?;
         self.self_check.as_ref().map_or(Ok(()), SelfCheck::validate)
     }
 
