@@ -24,6 +24,19 @@ pub enum StoppedBy {
 }
 
 impl StoppedBy {
+    /// What has happened, in words.
+    #[must_use]
+    pub fn words(self) -> &'static str {
+        match self {
+            StoppedBy::AllFrozen => "all grains are at rest",
+            StoppedBy::Time => "the time is up",
+            StoppedBy::Events => "the number of events is reached, or none is left",
+            StoppedBy::Collapse => "collapsed: collisions without end at one instant",
+            StoppedBy::Interrupted => "interrupted",
+            StoppedBy::Error => "stopped by an error",
+        }
+    }
+
     /// Whether the run came to an end of its own, so that nothing is left to
     /// resume.
     #[must_use]
@@ -332,15 +345,10 @@ impl fmt::Display for Summary {
     /// For people.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let reason = match self.stop_reason {
-            StoppedBy::AllFrozen => "all grains are at rest",
-            StoppedBy::Time => "the time is up",
             StoppedBy::Events if self.particles.normal + self.particles.falling == 0 => {
                 "nothing moves"
             }
-            StoppedBy::Events => "the number of events is reached, or none is left",
-            StoppedBy::Collapse => "collapsed: collisions without end at one instant",
-            StoppedBy::Interrupted => "interrupted",
-            StoppedBy::Error => "stopped by an error",
+            reason => reason.words(),
         };
         writeln!(f, "stopped at t = {:.6}: {reason}", self.time)?;
         if let Some(error) = &self.error {

@@ -3,7 +3,7 @@
 use std::fs;
 use std::io;
 
-use crate::output::{Checkpoint, CheckpointError, Ending, RunFolder, StoppedBy};
+use crate::output::{Checkpoint, CheckpointError, Ending, RunFolder};
 use crate::program::cli::ResumeArguments;
 use crate::program::criteria::Program;
 use crate::program::drive::{Attempt, Job, Options};
@@ -155,10 +155,6 @@ fn access(folder: &RunFolder, name: &str) -> impl FnOnce(io::Error) -> ProgramEr
 
 /// Why a run came to its end, if it did of its own.
 fn finished(folder: &RunFolder) -> Option<&'static str> {
-    match Ending::of(folder.path())?.stop_reason {
-        StoppedBy::AllFrozen => Some("all grains are at rest"),
-        StoppedBy::Time => Some("the time is up"),
-        StoppedBy::Events => Some("the number of events is reached, or none is left"),
-        StoppedBy::Collapse | StoppedBy::Interrupted | StoppedBy::Error => None,
-    }
+    let reason = Ending::of(folder.path())?.stop_reason;
+    reason.is_finished().then(|| reason.words())
 }
