@@ -213,14 +213,19 @@ impl Scenario {
             .find_map(|source| source.one_by_one.as_ref())
     }
 
+    /// Whether a run ends when no grain is normal or falling: if nothing else is said,
+    /// where gravity brings all to rest and does not turn.
+    pub(super) fn ends_all_frozen(&self) -> bool {
+        let comes_to_rest = !matches!(self.gravity, Gravity::None) && self.rotation.is_none();
+        self.stop.all_frozen.unwrap_or(comes_to_rest)
+    }
+
     /// Writes every default that depends on other values where it can be read,
     /// so that the scenario says all that a run depends on.
     pub fn resolve(&mut self) {
         self.guards
             .exit_speed
             .get_or_insert(0.1 * self.parameters.elastic_speed);
-        self.stop
-            .all_frozen
-            .get_or_insert(!matches!(self.gravity, Gravity::None) && self.rotation.is_none());
+        self.stop.all_frozen = Some(self.ends_all_frozen());
     }
 }
