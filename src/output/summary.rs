@@ -73,6 +73,9 @@ impl Ending {
 /// `summary.json`: how a run ended.
 ///
 /// Energies and the packing fraction are those of the last instant.
+///
+/// What is added later has a default where that is the truth for programs that did not
+/// have it. Without, what those have left is no summary for this one, only an [`Ending`].
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Summary {
     /// What the scenario calls itself.
