@@ -51,6 +51,8 @@ mod fractions;
 pub mod kinetic_theory;
 mod packing;
 mod pairs;
+#[cfg(test)]
+mod quadrature;
 mod radial;
 mod stress;
 mod surface;

@@ -27,8 +27,8 @@ pub use dynamics::{
 pub use impact::{Impact, Obstacle};
 pub use observer::{Observer, Occurrence, OccurrenceKind};
 pub use policy::{
-    Commands, NoEvent, Place, Reason, Response, SleepDecision, StatePolicy, WakeCause,
-    WakeDecision, Waking,
+    Commands, NoEvent, Place, Reason, Response, SHORTEST_WAIT, SleepDecision, StatePolicy,
+    WakeCause, WakeDecision, Waking,
 };
 pub use predictor::{Approach, Crowd, Encounter, Forecast, LANES, Nook, Predictor, Resting};
 pub use surroundings::{NearWall, Neighbour, Surroundings};

@@ -15,6 +15,7 @@ pub use folder::{FolderError, RunFolder, write_atomically};
 pub(crate) use folder::{lock, names_in};
 pub use series::{Series, SeriesRow};
 pub use summary::{
-    CollapseReport, EnergyReport, EventCounts, FractionReport, ParticleCounts, StoppedBy, Summary,
+    CollapseReport, Ending, EnergyReport, EventCounts, FractionReport, ParticleCounts, StoppedBy,
+    Summary,
 };
 pub use xyz::{Frame, XyzError, XyzReader};

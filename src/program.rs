@@ -17,6 +17,7 @@ mod means;
 mod parts;
 mod processor;
 mod progress;
+mod rain;
 mod reference;
 mod reproduce;
 mod resume;
@@ -26,6 +27,7 @@ mod show;
 mod signals;
 mod sweep;
 mod table;
+mod timing;
 mod validate;
 mod why;
 

@@ -46,8 +46,8 @@ pub use place::{Line, Place};
 pub use presets::{Preset, presets};
 pub use read::{Format, Origin, read, read_text};
 pub use schema::{
-    Base, Criteria, Dimension, DimensionError, Drum, Gas, Gravity, Guards, Numbering, OneByOne,
-    Output, OwnParts, Parameters, Phase, Rain, Rotation, Scenario, SelfCheck, Side, Sleep, Source,
+    Base, Dimension, DimensionError, Drum, Gas, Gravity, Guards, NamedParameters, Numbering,
+    OneByOne, Output, Parameters, Phase, Rain, Rotation, Scenario, SelfCheck, Side, Sleep, Source,
     SourceKind, Stop, Threshold, Turns,
 };
 pub use set::Assignment;

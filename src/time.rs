@@ -119,6 +119,19 @@ impl Time {
         self.ticks.wrapping_sub(earlier.ticks) as f64 * TICK + (self.rest - earlier.rest)
     }
 
+    /// How many multiples of `step` √(d/g), which is above 0, have been reached since
+    /// the start of the clock: the n-th one from the instant `from_units(n * step)` on,
+    /// for which the quotient of the two alone may be too small.
+    #[must_use]
+    pub fn multiples_reached(self, step: f64) -> f64 {
+        let passed = libm::floor(self.units() / step);
+        if Time::from_units((passed + 1.0) * step) <= self {
+            passed + 1.0
+        } else {
+            passed
+        }
+    }
+
     /// The earlier of two instants.
     #[must_use]
     #[inline]
@@ -386,6 +399,18 @@ mod tests {
     fn the_longest_time_is_no_negative_one() {
         assert_eq!(Time::LAST - Time::FIRST, 1.0 / TICK * 16.0);
         assert_eq!(Time::FIRST - Time::LAST, -1.0 / TICK * 16.0);
+    }
+
+    /// 43 · 0.1 / 0.1 is less than 43 in `f64`.
+    #[test]
+    fn a_multiple_is_reached_at_its_instant() {
+        for step in [0.1, 0.02, 0.3, 0.7] {
+            for count in (1..3000).map(f64::from) {
+                let instant = Time::from_units(count * step);
+                assert_eq!(instant.multiples_reached(step), count);
+                assert_eq!((instant + -1.0e-6).multiples_reached(step), count - 1.0);
+            }
+        }
     }
 
     #[test]

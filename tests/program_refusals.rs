@@ -264,6 +264,12 @@ fn a_run_that_cannot_end_is_refused() {
         &text,
         &["bad.toml:6:1", "give stop.time or stop.events"],
     );
+    let text = GOOD.replace("time = 5", "") + "[rotation]\nangular_velocity = 0.1\n";
+    assert_refused(
+        "bad.toml",
+        &text,
+        &["bad.toml:5:1", "give stop.time or stop.events"],
+    );
 }
 
 #[test]

@@ -273,6 +273,30 @@ fn a_finished_run_is_left_alone() {
     );
 }
 
+/// Takes one of the numbers of events out of a summary, as of a program that did not
+/// count them.
+fn forget_count(run: &Path, name: &str) {
+    let file = run.join("summary.json");
+    let mut summary: Value = serde_json::from_slice(&fs::read(&file).unwrap()).unwrap();
+    let events = summary["events"].as_object_mut().unwrap();
+    assert!(events.remove(name).is_some());
+    fs::write(&file, serde_json::to_vec(&summary).unwrap()).unwrap();
+}
+
+#[test]
+fn a_run_that_another_version_has_finished_is_left_alone() {
+    let place = place();
+    let run = place.path().join("runs/bounce-1");
+    expect(place.path(), 0, &["run", "bounce"]);
+    for name in ["support", "guard"] {
+        forget_count(&run, name);
+        let before = content(&run);
+        let said = expect(place.path(), 0, &["resume", "runs/bounce-1"]);
+        assert!(said.contains("finished already"), "{said}");
+        assert_eq!(content(&run), before);
+    }
+}
+
 #[test]
 fn what_is_no_run_is_refused() {
     let place = place();

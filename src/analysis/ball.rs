@@ -67,6 +67,7 @@ fn share_below<const D: usize>(u: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::analysis::quadrature::simpson;
     use proptest::prelude::*;
 
     #[test]
@@ -122,22 +123,13 @@ mod tests {
     fn by_quadrature<const D: usize>(radius: f64, centre: f64, low: f64, high: f64) -> f64 {
         let angle = |height: f64| ((height - centre) / radius).clamp(-1.0, 1.0).asin();
         let (from, to) = (angle(low), angle(high));
-        let steps = 400;
-        let width = (to - from) / f64::from(steps);
-        let mut sum = 0.0;
-        for step in 0..=steps {
-            let weight = match step {
-                0 => 1.0,
-                s if s == steps => 1.0,
-                s if s % 2 == 1 => 4.0,
-                _ => 2.0,
-            };
-            let cos = (from + width * f64::from(step)).cos();
-            // Volume of the (D − 1)-ball of unit radius.
-            let section = [1.0, 2.0, PI, 4.0 * PI / 3.0][D - 1];
-            sum += weight * section * (radius * cos).powi(D as i32 - 1) * radius * cos;
-        }
-        sum * width / 3.0
+        // Volume of the (D − 1)-ball of unit radius.
+        let unit = [1.0, 2.0, PI, 4.0 * PI / 3.0][D - 1];
+        let section = |angle: f64| {
+            let cos = angle.cos();
+            unit * (radius * cos).powi(D as i32 - 1) * radius * cos
+        };
+        (to - from) * simpson(400, |u| section(from + (to - from) * u))
     }
 
     proptest! {

@@ -85,6 +85,7 @@ fn volume_to_corner(x: f64, y: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::analysis::quadrature::simpson;
     use crate::analysis::{ball_slab_volume, ball_volume};
     use proptest::prelude::*;
     use std::f64::consts::PI;
@@ -146,22 +147,12 @@ mod tests {
         cuts.sort_by(f64::total_cmp);
         let mut sum = 0.0;
         for piece in cuts.windows(2) {
-            let steps = 400;
             // Substituted so that square roots at the ends become smooth.
             let at = |u: f64| piece[0] + (piece[1] - piece[0]) * u * u * (3.0 - 2.0 * u);
             let slope = |u: f64| (piece[1] - piece[0]) * 6.0 * u * (1.0 - u);
-            for step in 0..=steps {
-                let weight = match step {
-                    0 => 1.0,
-                    s if s == steps => 1.0,
-                    s if s % 2 == 1 => 4.0,
-                    _ => 2.0,
-                };
-                let u = f64::from(step) / f64::from(steps);
-                let x = radius * at(u).sin();
-                sum += weight * section(x) * radius * at(u).cos() * slope(u)
-                    / (3.0 * f64::from(steps));
-            }
+            sum += simpson(400, |u| {
+                section(radius * at(u).sin()) * radius * at(u).cos() * slope(u)
+            });
         }
         sum
     }

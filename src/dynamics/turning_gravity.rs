@@ -42,22 +42,11 @@ impl<const D: usize> TurningGravity<D> {
         self
     }
 
-    /// How many steps of such a length have been made by `time`. A step is made at
-    /// the instant of its multiple, for which the quotient alone may be too small.
-    fn steps_made(step: f64, time: Time) -> f64 {
-        let steps = libm::floor(time.units() / step);
-        if Time::from_units((steps + 1.0) * step) <= time {
-            steps + 1.0
-        } else {
-            steps
-        }
-    }
-
     /// The angle that gravity has turned by at `time`, in radians.
     fn angle(&self, time: Time) -> f64 {
         match self.step {
             None => self.rate * time.units(),
-            Some(step) => self.rate * step * Self::steps_made(step, time),
+            Some(step) => self.rate * step * time.multiples_reached(step),
         }
     }
 
@@ -66,7 +55,7 @@ impl<const D: usize> TurningGravity<D> {
         let Some(step) = self.step else {
             return f64::INFINITY;
         };
-        let next = Time::from_units((Self::steps_made(step, since) + 1.0) * step) - since;
+        let next = Time::from_units((since.multiples_reached(step) + 1.0) * step) - since;
         if next > 0.0 { next } else { step }
     }
 
@@ -186,7 +175,6 @@ mod tests {
     use crate::model::Flight;
     use crate::particle::ParticleId;
 
-    /// 43 · 0.1 / 0.1 is less than 43 in `f64`.
     #[test]
     fn at_the_instant_of_a_step_it_has_been_made() {
         let gravity = Vector::<2>::new(0.0, -1.0);

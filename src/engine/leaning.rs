@@ -17,13 +17,9 @@ use crate::engine::queue::{Key, Rank};
 use crate::engine::simulation::Simulation;
 use crate::engine::transitions::{Alarm, Call};
 use crate::engine::view::View;
-use crate::model::{EventOf, Model, Observer, StatePolicy};
+use crate::model::{EventOf, Model, Observer, SHORTEST_WAIT, StatePolicy};
 use crate::particle::{Mode, ParticleId};
 use crate::time::Time;
-
-/// The engine looks no sooner than this again after a grain that leaves, in
-/// √(d/g): time goes on, whatever rounding does.
-const SOONEST: f64 = 1.0e-9;
 
 /// A sleeper leans on a grain.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -276,7 +272,7 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
             self.call(sleeper, supporter);
             return;
         }
-        let until = self.world.clock + stays.max(SOONEST);
+        let until = self.world.clock + stays.max(SHORTEST_WAIT);
         if until.is_finite() && look.is_none_or(|(earlier, _)| until < earlier) {
             self.set_alarm(until, sleeper, Call::Look(supporter));
             if let Some(edge) = self.leaning.edge(sleeper, supporter) {

@@ -122,6 +122,11 @@ pub enum Response<const D: usize> {
     Sleep(Reason),
 }
 
+/// What asks for itself again and again waits at least so long each time, in √(d/g):
+/// so time goes on, whatever rounding does. The engine and the built-in policies
+/// keep to it.
+pub const SHORTEST_WAIT: f64 = 1.0e-9;
+
 /// What a policy asks of the engine besides its answer.
 #[derive(Clone, Debug)]
 pub struct Commands<E> {
@@ -140,8 +145,9 @@ impl<E> Default for Commands<E> {
 
 impl<E> Commands<E> {
     /// Asks for `event` to be put to [`StatePolicy::on_event`] for a grain
-    /// `after` √(d/g), 0 or more. Nothing cancels it: a policy that has lost
-    /// interest answers [`Response::Ignore`].
+    /// `after` √(d/g), 0 or more; [`SHORTEST_WAIT`] or more if each asks for the next.
+    /// Nothing cancels it: a policy that has lost interest answers
+    /// [`Response::Ignore`].
     pub fn schedule(&mut self, id: ParticleId, after: f64, event: E) {
         self.scheduled.push((id, after, event));
     }

@@ -1,4 +1,5 @@
-use std::fmt;
+use std::path::Path;
+use std::{fmt, fs, io};
 
 use serde::{Deserialize, Serialize};
 
@@ -23,6 +24,19 @@ pub enum StoppedBy {
 }
 
 impl StoppedBy {
+    /// What has happened, in words.
+    #[must_use]
+    pub fn words(self) -> &'static str {
+        match self {
+            StoppedBy::AllFrozen => "all grains are at rest",
+            StoppedBy::Time => "the time is up",
+            StoppedBy::Events => "the number of events is reached, or none is left",
+            StoppedBy::Collapse => "collapsed: collisions without end at one instant",
+            StoppedBy::Interrupted => "interrupted",
+            StoppedBy::Error => "stopped by an error",
+        }
+    }
+
     /// Whether the run came to an end of its own, so that nothing is left to
     /// resume.
     #[must_use]
@@ -34,9 +48,34 @@ impl StoppedBy {
     }
 }
 
+/// Where summaries stand in the folders of runs.
+const FILE: &str = "summary.json";
+
+/// When and why a run ended: what `summary.json` says whatever the version of the
+/// program, which may count other things than this one.
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
+pub struct Ending {
+    /// When, in √(d/g).
+    pub time: f64,
+    /// Why.
+    pub stop_reason: StoppedBy,
+}
+
+impl Ending {
+    /// That of the run in a folder; `None` if it has left none that can be read.
+    #[must_use]
+    pub fn of(folder: &Path) -> Option<Self> {
+        let text = fs::read(folder.join(FILE)).ok()?;
+        serde_json::from_slice(&text).ok()
+    }
+}
+
 /// `summary.json`: how a run ended.
 ///
 /// Energies and the packing fraction are those of the last instant.
+///
+/// What is added later has a default where that is the truth for programs that did not
+/// have it. Without, what those have left is no summary for this one, only an [`Ending`].
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Summary {
     /// What the scenario calls itself.
@@ -81,6 +120,18 @@ pub struct Summary {
     pub version: String,
 }
 
+impl Summary {
+    /// That of the run in a folder.
+    ///
+    /// # Errors
+    ///
+    /// When it cannot be read, or lacks what this version of the program wants to know.
+    pub fn of(folder: &Path) -> io::Result<Self> {
+        let text = fs::read(folder.join(FILE))?;
+        serde_json::from_slice(&text).map_err(io::Error::other)
+    }
+}
+
 /// A collapse.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct CollapseReport {
@@ -117,7 +168,9 @@ pub struct EventCounts {
     pub sleep: u64,
     /// Self-checks made.
     pub check: u64,
-    /// Times a sleeper was asked since a grain that it leans on had changed.
+    /// Times a sleeper was asked since a grain that it leans on had changed. Programs
+    /// that did not count it asked nobody.
+    #[serde(default)]
     pub support: u64,
     /// Of both, those that woke a grain.
     pub check_wake: u64,
@@ -295,15 +348,10 @@ impl fmt::Display for Summary {
     /// For people.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let reason = match self.stop_reason {
-            StoppedBy::AllFrozen => "all grains are at rest",
-            StoppedBy::Time => "the time is up",
             StoppedBy::Events if self.particles.normal + self.particles.falling == 0 => {
                 "nothing moves"
             }
-            StoppedBy::Events => "the number of events is reached, or none is left",
-            StoppedBy::Collapse => "collapsed: collisions without end at one instant",
-            StoppedBy::Interrupted => "interrupted",
-            StoppedBy::Error => "stopped by an error",
+            reason => reason.words(),
         };
         writeln!(f, "stopped at t = {:.6}: {reason}", self.time)?;
         if let Some(error) = &self.error {

@@ -13,6 +13,7 @@ use crate::model::{
 };
 use crate::particle::{ParticleId, Vector};
 use crate::policy::asleep::Asleep;
+use crate::policy::parameters::not_negative;
 use crate::policy::supports::{Check, CheckDue, Kept, SelfCheck};
 use crate::time::Time;
 
@@ -83,10 +84,7 @@ impl<C> AtRest<C> {
     }
 
     fn check(&self) -> Option<Check<'_>> {
-        self.self_check.as_ref().map(|rules| Check {
-            rules,
-            walls_count: self.wall_supports,
-        })
+        Check::of(self.self_check.as_ref(), self.wall_supports)
     }
 
     /// What a sleeper starts with if it wakes now.
@@ -119,19 +117,8 @@ impl<const D: usize, C: RestCondition<D>> StatePolicy<D> for AtRest<C> {
     type Event = CheckDue;
 
     fn validate(&self) -> Result<(), SetupError> {
-        for (field, value) in [
-            ("wake_speed", self.wake_speed),
-            ("store_time", self.store_time),
-        ] {
-            // NaN is refused, infinity is not.
-            if value.is_nan() || value < 0.0 {
-                return Err(SetupError::Parameter {
-                    field,
-                    value,
-                    allowed: "0 or more is allowed",
-                });
-            }
-        }
+        not_negative("wake_speed", self.wake_speed)?;
+        not_negative("store_time", self.store_time)?;
         self.condition.validate()?;
         self.self_check.as_ref().map_or(Ok(()), SelfCheck::validate)
     }

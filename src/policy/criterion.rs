@@ -42,6 +42,11 @@ pub struct CriterionMemory<const D: usize>(Inner<D>);
 
 type HistoryOf<C, const D: usize> = <C as RestCondition<D>>::History;
 
+/// An enum is as long as its longest variant, and one is kept for every grain, whatever
+/// the criterion. So the variant that most runs use, the paper's, lies in place and sets
+/// the length, 72 bytes in space; those of the gallery lie in boxes, for they would take
+/// up to twice as much of every grain. (That of `Temperature` alone would not, without a
+/// history; it goes with the others.)
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(bound = "")]
 enum Inner<const D: usize> {
@@ -49,7 +54,6 @@ enum Inner<const D: usize> {
     #[default]
     Nothing,
     Descent(Remembered<D>),
-    // These are longer, and none of the others is to take as much room.
     Displacement(Box<RestMemory<HistoryOf<DisplacementWindow, D>, D>>),
     Variance(Box<RestMemory<HistoryOf<VelocityVariance, D>, D>>),
     Temperature(Box<RestMemory<HistoryOf<GranularTemperature, D>, D>>),

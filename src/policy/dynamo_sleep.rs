@@ -4,7 +4,7 @@ use crate::error::SetupError;
 use crate::model::{Impact, Reason, Surroundings};
 use crate::particle::Vector;
 use crate::policy::at_rest::RestCondition;
-use crate::policy::parameters::positive;
+use crate::policy::parameters::{not_negative, positive};
 use crate::time::Time;
 
 /// The sleep rule of the code DynamO (Bannerman, Sargant and Lue 2011,
@@ -65,14 +65,7 @@ impl<const D: usize> RestCondition<D> for DynamoSleep {
         positive("sleep_speed", self.sleep_speed)?;
         positive("distance", self.distance)?;
         positive("time", self.time)?;
-        if self.wake_speed >= 0.0 {
-            return Ok(());
-        }
-        Err(SetupError::Parameter {
-            field: "wake_speed",
-            value: self.wake_speed,
-            allowed: "0 or more is allowed",
-        })
+        not_negative("wake_speed", self.wake_speed)
     }
 
     fn at_rest<S: Surroundings<D>>(

@@ -4,7 +4,7 @@ use crate::error::SetupError;
 use crate::model::{Impact, Reason, Surroundings};
 use crate::particle::Vector;
 use crate::policy::at_rest::RestCondition;
-use crate::policy::parameters::positive;
+use crate::policy::parameters::{neighbour_range, positive};
 
 /// At rest is who lives in a cold and dense neighbourhood: the granular
 /// temperature of the grain and its neighbours,
@@ -47,14 +47,7 @@ impl<const D: usize> RestCondition<D> for GranularTemperature {
 
     fn validate(&self) -> Result<(), SetupError> {
         positive("temperature", self.temperature)?;
-        if !(1.0..=2.0).contains(&self.range) {
-            return Err(SetupError::Parameter {
-                field: "range",
-                value: self.range,
-                allowed: "1 … 2 is allowed",
-            });
-        }
-        Ok(())
+        neighbour_range("range", self.range)
     }
 
     fn at_rest<S: Surroundings<D>>(

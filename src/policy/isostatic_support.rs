@@ -5,6 +5,7 @@ use crate::model::{
 };
 use crate::particle::{ParticleId, Vector};
 use crate::policy::cone::{Normals, holds};
+use crate::policy::parameters::neighbour_range;
 use crate::policy::slow_descent::{Remembered, SlowDescent};
 use crate::policy::supports::{CheckDue, WALL_RANGE};
 
@@ -76,13 +77,7 @@ impl<const D: usize> StatePolicy<D> for IsostaticSupport {
     type Event = CheckDue;
 
     fn validate(&self) -> Result<(), SetupError> {
-        if !(1.0..=2.0).contains(&self.range) {
-            return Err(SetupError::Parameter {
-                field: "range",
-                value: self.range,
-                allowed: "1 … 2 is allowed",
-            });
-        }
+        neighbour_range("range", self.range)?;
         StatePolicy::<D>::validate(&self.descent)
     }
 

@@ -11,8 +11,9 @@ use crate::model::{
     Commands, Impact, Obstacle, Place, Reason, Response, SleepDecision, StatePolicy, Surroundings,
     WakeCause, WakeDecision, Waking,
 };
-use crate::particle::{ParticleId, Vector};
+use crate::particle::{Particle, ParticleId, Vector};
 use crate::policy::asleep::Asleep;
+use crate::policy::parameters::{fraction, not_negative};
 use crate::policy::supports::{Check, CheckDue, Kept, SelfCheck};
 use crate::time::Time;
 
@@ -101,10 +102,7 @@ impl SlowDescent {
     }
 
     fn check(&self) -> Option<Check<'_>> {
-        self.self_check.as_ref().map(|rules| Check {
-            rules,
-            walls_count: self.wall_supports,
-        })
+        Check::of(self.self_check.as_ref(), self.wall_supports)
     }
 
     /// What a sleeper gets back if it wakes now.
@@ -130,6 +128,17 @@ impl SlowDescent {
             },
             _ => Waking::with_velocity(ground),
         }
+    }
+
+    /// The same for one that has lost a support.
+    fn woken_by_check<const D: usize, S: Surroundings<D>>(
+        &self,
+        memory: &Remembered<D>,
+        near: &S,
+        grain: &Particle<D>,
+    ) -> Waking<D> {
+        let (now, gravity) = (near.time(), near.gravity());
+        self.given_back(memory, now, &gravity, grain.velocity, grain.mass)
     }
 
     fn is_on_support<const D: usize>(&self, impact: &Impact<D>) -> bool {
@@ -184,28 +193,10 @@ impl<const D: usize> StatePolicy<D> for SlowDescent {
     type Event = CheckDue;
 
     fn validate(&self) -> Result<(), SetupError> {
-        let positive = [
-            ("sleep_speed", self.sleep_speed),
-            ("wake_speed", self.wake_speed),
-            ("store_time", self.store_time.unwrap_or(0.0)),
-        ];
-        for (field, value) in positive {
-            // NaN is refused, infinity is not.
-            if value.is_nan() || value < 0.0 {
-                return Err(SetupError::Parameter {
-                    field,
-                    value,
-                    allowed: "0 or more is allowed",
-                });
-            }
-        }
-        if !(0.0..=1.0).contains(&self.frozen_restitution) {
-            return Err(SetupError::Parameter {
-                field: "frozen_restitution",
-                value: self.frozen_restitution,
-                allowed: "0 … 1 is allowed",
-            });
-        }
+        not_negative("sleep_speed", self.sleep_speed)?;
+        not_negative("wake_speed", self.wake_speed)?;
+        not_negative("store_time", self.store_time.unwrap_or(0.0))?;
+        fraction("frozen_restitution", self.frozen_restitution)?;
         self.self_check.as_ref().map_or(Ok(()), SelfCheck::validate)
     }
 
@@ -365,8 +356,7 @@ impl<const D: usize> StatePolicy<D> for SlowDescent {
     ) -> Response<D> {
         let kept = &memory.supports;
         kept.go_on(self.check(), event, id, near, commands, |grain| {
-            let (now, gravity) = (near.time(), near.gravity());
-            self.given_back(memory, now, &gravity, grain.velocity, grain.mass)
+            self.woken_by_check(memory, near, grain)
         })
     }
 
@@ -380,8 +370,7 @@ impl<const D: usize> StatePolicy<D> for SlowDescent {
     ) -> Response<D> {
         let kept = &memory.supports;
         kept.answer(self.check(), id, near, |grain| {
-            let (now, gravity) = (near.time(), near.gravity());
-            self.given_back(memory, now, &gravity, grain.velocity, grain.mass)
+            self.woken_by_check(memory, near, grain)
         })
     }
 }

@@ -13,7 +13,7 @@ use serde::{Deserialize, Serialize};
 use crate::error::SetupError;
 #[cfg(doc)]
 use crate::model::GravityCourse;
-use crate::model::{Commands, Reason, Surroundings};
+use crate::model::{Commands, Reason, SHORTEST_WAIT, Surroundings};
 use crate::particle::{Mode, ParticleId, Vector};
 use crate::time::Time;
 pub(super) use kept::Kept;
@@ -93,7 +93,7 @@ impl Default for SelfCheck {
 impl SelfCheck {
     pub(super) fn validate(&self) -> Result<(), SetupError> {
         // Shorter intervals would check without end at one instant.
-        if !(self.interval >= 1.0e-9 && self.interval.is_finite()) {
+        if !(self.interval >= SHORTEST_WAIT && self.interval.is_finite()) {
             return Err(SetupError::Parameter {
                 field: "self_check.interval",
                 value: self.interval,
@@ -157,13 +157,8 @@ impl SelfCheck {
         match self.phase {
             Phase::Spread { .. } | Phase::Own => self.interval,
             Phase::Global => {
-                let passed = libm::floor(now.units() / self.interval);
-                let next = Time::from_units((passed + 1.0) * self.interval);
-                if next > now {
-                    next - now
-                } else {
-                    Time::from_units((passed + 2.0) * self.interval) - now
-                }
+                let next = now.multiples_reached(self.interval) + 1.0;
+                Time::from_units(next * self.interval) - now
             }
         }
     }
@@ -172,9 +167,16 @@ impl SelfCheck {
 /// The self-check of a policy.
 #[derive(Clone, Copy)]
 pub(super) struct Check<'a> {
-    pub(super) rules: &'a SelfCheck,
+    rules: &'a SelfCheck,
     /// Whether walls are supports.
-    pub(super) walls_count: bool,
+    walls_count: bool,
+}
+
+impl<'a> Check<'a> {
+    /// That of a policy with such rules, if it has any.
+    pub(super) fn of(rules: Option<&'a SelfCheck>, walls_count: bool) -> Option<Self> {
+        rules.map(|rules| Check { rules, walls_count })
+    }
 }
 
 impl Deref for Check<'_> {

@@ -50,18 +50,19 @@ const ROUND: f64 = 1.0e-12;
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Turning;
 
-/// A flight at constant acceleration: as others see it, or up to a deviation.
+/// A flight at constant acceleration, in the place of one that turns: as others see
+/// it, or up to a deviation. (Predictors name no dynamics, so not theirs.)
 #[derive(Clone, Copy, Debug)]
-struct Arc<const D: usize> {
+struct Parabola<const D: usize> {
     position: Vector<D>,
     velocity: Vector<D>,
     acceleration: Vector<D>,
 }
 
-impl<const D: usize> Arc<D> {
+impl<const D: usize> Parabola<D> {
     /// With the acceleration at the start.
     fn tangent<F: TurningFlight<D>>(flight: &F) -> Self {
-        Arc {
+        Parabola {
             position: flight.start(),
             velocity: flight.start_velocity(),
             acceleration: flight.steady() + flight.turning(),
@@ -69,7 +70,7 @@ impl<const D: usize> Arc<D> {
     }
 
     fn straight<F: TurningFlight<D>>(flight: &F) -> Self {
-        Arc {
+        Parabola {
             position: flight.start(),
             velocity: flight.start_velocity(),
             acceleration: Vector::zeros(),
@@ -77,7 +78,7 @@ impl<const D: usize> Arc<D> {
     }
 }
 
-impl<const D: usize> Flight<D> for Arc<D> {
+impl<const D: usize> Flight<D> for Parabola<D> {
     fn position(&self, after: f64) -> Vector<D> {
         self.position + (self.velocity + self.acceleration * (0.5 * after)) * after
     }
@@ -97,7 +98,7 @@ impl<const D: usize> Flight<D> for Arc<D> {
     }
 
     fn advanced(&self, after: f64) -> Self {
-        Arc {
+        Parabola {
             position: self.position(after),
             velocity: self.velocity(after),
             ..*self
@@ -113,7 +114,7 @@ impl<const D: usize> Flight<D> for Arc<D> {
     }
 }
 
-impl<const D: usize> PolynomialFlight<D> for Arc<D> {
+impl<const D: usize> PolynomialFlight<D> for Parabola<D> {
     const ACCELERATES: bool = true;
 
     #[inline]
@@ -149,16 +150,16 @@ impl<const D: usize, F: TurningFlight<D>> Predictor<D, F> for Turning {
             std::array::from_fn(|lane| other(lane).advanced(crowd.after[lane]));
         let mut turn: f64 = 0.0;
         let mut until = own.changes_after();
-        let arcs = others.each_ref().map(|flight| {
-            let mut arc = Arc::tangent(flight);
+        let parabolas = others.each_ref().map(|flight| {
+            let mut parabola = Parabola::tangent(flight);
             if own.accelerates_like(flight) {
                 // Not even by rounding is there a difference.
-                arc.acceleration = own.steady() + own.turning();
+                parabola.acceleration = own.steady() + own.turning();
             } else {
                 turn = turn.max(jerk(own) + jerk(flight));
                 until = until.min(flight.changes_after());
             }
-            arc
+            parabola
         });
         let least = crowd
             .distances
@@ -172,12 +173,12 @@ impl<const D: usize, F: TurningFlight<D>> Predictor<D, F> for Turning {
                 horizon,
                 ..*crowd
             };
-            screen::not_before(&Arc::tangent(own), |lane| arcs[lane], &near)
+            screen::not_before(&Parabola::tangent(own), |lane| parabolas[lane], &near)
         })
     }
 
     fn not_before_resting(&self, nook: &Nook<'_, D, F>) -> [f64; LANES] {
-        let own = Arc::tangent(nook.own);
+        let own = Parabola::tangent(nook.own);
         // Lanes without anybody have no distance.
         let distances = nook.resting.distances.iter().filter(|&&d| d > 0.0);
         let least = distances.copied().fold(f64::INFINITY, f64::min) * nook.scale;
@@ -211,7 +212,7 @@ impl<const D: usize, F: TurningFlight<D>> Predictor<D, F> for Turning {
                 } else if flight.turning() == Vector::<D>::zeros() {
                     let until = flight.changes_after();
                     let horizon = encounter.horizon.min(until);
-                    let bent = encounter_of(encounter, Arc::tangent(flight), horizon);
+                    let bent = encounter_of(encounter, Parabola::tangent(flight), horizon);
                     match wall::plane(&bent, &normal, offset) {
                         Forecast::Contact(time) if time <= until => Forecast::Contact(time),
                         _ if until < encounter.horizon => Forecast::AskAgain(until),
@@ -285,8 +286,8 @@ fn in_stages(
 /// First contact of two flights that are straight as seen from each other.
 fn straight<const D: usize, F: TurningFlight<D>>(approach: &Approach<D, F>) -> Forecast {
     let (forecast, _) = super::pair(&Approach {
-        first: Arc::straight(&approach.first),
-        second: Arc::straight(&approach.second),
+        first: Parabola::straight(&approach.first),
+        second: Parabola::straight(&approach.second),
         shift: approach.shift,
         distance: approach.distance,
         growth: approach.growth,

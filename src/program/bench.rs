@@ -7,7 +7,6 @@ mod growth;
 mod memory;
 mod scaling;
 mod table;
-mod timing;
 
 pub(super) use arguments::BenchArguments;
 
@@ -16,7 +15,7 @@ use crate::program::error::ProgramError;
 
 /// More grains than this are numbered along a curve, so that neighbours lie together
 /// in memory.
-const MANY: usize = 20_000;
+pub(super) const MANY: usize = 20_000;
 
 pub(super) fn bench(arguments: &BenchArguments) -> Result<u8, ProgramError> {
     match &arguments.subject {

@@ -7,7 +7,6 @@ mod report;
 pub(super) use arguments::CompareArguments;
 pub(super) use census::{Census, Had, TakeCensus};
 
-use std::fs;
 use std::path::PathBuf;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -21,7 +20,6 @@ use crate::program::error::ProgramError;
 use crate::program::show::say;
 use crate::program::signals::Signals;
 use crate::program::sweep::{SweepArguments, Variation, carry_out};
-use crate::scenario::{Origin, ScenarioError, read_text};
 
 pub(super) fn compare(arguments: &CompareArguments, program: &Program) -> Result<u8, ProgramError> {
     let policies = arguments.policies.join(",");
@@ -110,22 +108,10 @@ fn row_of(
     signals: &Signals,
 ) -> Result<Row, ProgramError> {
     let folder = RunFolder::open(folder)?;
-    let file = folder.file("scenario.toml");
-    let mut origin = Origin::open(&file)?;
-    program.acquaint_run(&mut origin);
-    let scenario = read_text(&origin).map_err(ScenarioError::from)?;
-    let text = fs::read(&file).map_err(ProgramError::io(file.display().to_string()))?;
-    let ended = folder.file("summary.json");
-    let summary = fs::read_to_string(&ended)
-        .and_then(|text| serde_json::from_str::<Summary>(&text).map_err(std::io::Error::other));
-    let summary = summary.map_err(ProgramError::io(ended.display().to_string()))?;
-    let job = Job {
-        origin,
-        scenario,
-        folder,
-        text,
-        options: Options::default(),
-    };
+    let job = Job::begun(folder, Options::default(), program)?;
+    let ended = job.folder.file("summary.json");
+    let summary =
+        Summary::of(job.folder.path()).map_err(ProgramError::io(ended.display().to_string()))?;
     let runner = program.runner(&job.scenario);
     let had = Had {
         events: summary.events.total,

@@ -35,7 +35,6 @@ use crate::scenario::Assignment;
 
 /// What a figure is made from.
 struct Context<'a> {
-    program: &'a Program,
     effort: Effort,
     finished: Finished<'a>,
 }
@@ -160,7 +159,6 @@ pub(super) fn reproduce(
         return Ok(code);
     }
     let context = Context {
-        program,
         effort,
         finished: Finished { folder: &runs },
     };

@@ -3,7 +3,7 @@
 use std::fs;
 use std::io;
 
-use crate::output::{Checkpoint, CheckpointError, RunFolder, StoppedBy, Summary};
+use crate::output::{Checkpoint, CheckpointError, Ending, RunFolder};
 use crate::program::cli::ResumeArguments;
 use crate::program::criteria::Program;
 use crate::program::drive::{Attempt, Job, Options};
@@ -36,6 +36,28 @@ pub(super) fn resume(arguments: &ResumeArguments, program: &Program) -> Result<u
     }
 }
 
+impl Job {
+    /// The run that was begun in a folder, as its `scenario.toml` says.
+    pub(super) fn begun(
+        folder: RunFolder,
+        options: Options,
+        program: &Program,
+    ) -> Result<Self, ProgramError> {
+        let file = folder.file("scenario.toml");
+        let mut origin = Origin::open(&file)?;
+        program.acquaint_run(&mut origin);
+        let scenario = read_text(&origin).map_err(ScenarioError::from)?;
+        let text = fs::read(&file).map_err(access(&folder, "scenario.toml"))?;
+        Ok(Job {
+            origin,
+            scenario,
+            folder,
+            text,
+            options,
+        })
+    }
+}
+
 /// What has become of a run that was begun earlier.
 pub(super) enum Continued {
     /// It had come to its end, and why.
@@ -58,18 +80,7 @@ pub(super) fn continued(
         Checkpoint::clear(&folder).map_err(access(&folder, "checkpoint"))?;
         return Ok(Continued::Finished(reason));
     }
-    let file = folder.file("scenario.toml");
-    let mut origin = Origin::open(&file)?;
-    program.acquaint_run(&mut origin);
-    let scenario = read_text(&origin).map_err(ScenarioError::from)?;
-    let text = fs::read(&file).map_err(access(&folder, "scenario.toml"))?;
-    let job = Job {
-        origin,
-        scenario,
-        folder,
-        text,
-        options,
-    };
+    let job = Job::begun(folder, options, program)?;
     newest_good(&job, program.runner(&job.scenario), signals).map(Continued::Ended)
 }
 
@@ -144,12 +155,6 @@ fn access(folder: &RunFolder, name: &str) -> impl FnOnce(io::Error) -> ProgramEr
 
 /// Why a run came to its end, if it did of its own.
 fn finished(folder: &RunFolder) -> Option<&'static str> {
-    let text = fs::read_to_string(folder.file("summary.json")).ok()?;
-    let summary: Summary = serde_json::from_str(&text).ok()?;
-    match summary.stop_reason {
-        StoppedBy::AllFrozen => Some("all grains are at rest"),
-        StoppedBy::Time => Some("the time is up"),
-        StoppedBy::Events => Some("the number of events is reached, or none is left"),
-        StoppedBy::Collapse | StoppedBy::Interrupted | StoppedBy::Error => None,
-    }
+    let reason = Ending::of(folder.path())?.stop_reason;
+    reason.is_finished().then(|| reason.words())
 }

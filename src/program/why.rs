@@ -6,14 +6,13 @@ mod contacts;
 pub(super) use arguments::WhyArguments;
 
 use std::fmt;
-use std::fs;
 
 use serde::Serialize;
 
 use crate::boundary::Cuboid;
 use crate::engine::Answer;
 use crate::model::Model;
-use crate::output::{Checkpoint, RunFolder, Summary};
+use crate::output::{Checkpoint, Ending, RunFolder};
 use crate::particle::{Mode, ParticleId};
 use crate::program::criteria::Program;
 use crate::program::drive::{Job, Options, Replay};
@@ -21,7 +20,7 @@ use crate::program::error::ProgramError;
 use crate::program::runner::Task;
 use crate::program::show::say_result;
 use crate::program::why::contacts::{Contact, contacts};
-use crate::scenario::{Origin, ScenarioError, Start, read_text};
+use crate::scenario::Start;
 use crate::time::Time;
 
 /// The program's answer about a grain.
@@ -133,32 +132,16 @@ pub(super) struct Question {
 
 pub(super) fn why(arguments: &WhyArguments, program: &Program) -> Result<u8, ProgramError> {
     let folder = RunFolder::open(&arguments.folder)?;
-    let file = folder.file("scenario.toml");
-    let mut origin = Origin::open(&file)?;
-    program.acquaint_run(&mut origin);
-    let scenario = read_text(&origin).map_err(ScenarioError::from)?;
-    let text = fs::read(&file).map_err(ProgramError::io(file.display().to_string()))?;
-    let job = Job {
-        origin,
-        scenario,
-        folder,
-        text,
-        options: Options::default(),
-    };
-    let time = arguments.time.or_else(|| ended(&job.folder));
+    let job = Job::begun(folder, Options::default(), program)?;
+    let time = arguments
+        .time
+        .or_else(|| Some(Ending::of(job.folder.path())?.time));
     let question = Question {
         particle: ParticleId(arguments.particle),
         time: time.map_or(Time::NEVER, Time::from_units),
     };
     let report = answer(&job, program, question)?;
     say_result(&report, arguments.json).map(|()| 0)
-}
-
-/// When a run ended.
-fn ended(folder: &RunFolder) -> Option<f64> {
-    let text = fs::read_to_string(folder.file("summary.json")).ok()?;
-    let summary: Summary = serde_json::from_str(&text).ok()?;
-    Some(summary.time)
 }
 
 /// From the newest checkpoint that is not later than the question, else from the

@@ -228,18 +228,7 @@ pub(super) fn refuse_flaw(origin: &Origin, path: &Path, flaw: Flaw) -> Refusal {
             let at = inside.segments().iter().fold(path.clone(), Path::join);
             misfit(origin, at, &message)
         }
-        Flaw::Range(SetupError::Parameter {
-            field,
-            value,
-            allowed,
-        }) => {
-            let problem = Problem::Value {
-                found: value.to_string(),
-                allowed: allowed.to_owned(),
-            };
-            origin.refuse(path.clone().key(field), problem)
-        }
-        Flaw::Range(other) => origin.refuse(path.clone(), other),
+        Flaw::Range(error) => origin.refuse_part(path.clone(), error),
     }
 }
 

@@ -4,6 +4,7 @@ use std::path::{Path as FilePath, PathBuf};
 
 use toml::{Table, Value};
 
+use crate::error::SetupError;
 use crate::scenario::criteria::{KnownCriterion, built_in_criteria, resolve};
 use crate::scenario::error::{Problem, Refusal, ScenarioError};
 use crate::scenario::parts::{KnownParts, resolve_parts};
@@ -102,6 +103,25 @@ impl Origin {
     #[must_use]
     pub fn refuse(&self, path: Path, problem: impl Into<Problem>) -> Refusal {
         self.refuse_at(path, problem.into(), false)
+    }
+
+    /// A refusal of what stands at `path` for what its own check says: at the parameter
+    /// that is out of its range, where it is one.
+    pub(super) fn refuse_part(&self, path: Path, error: SetupError) -> Refusal {
+        match error {
+            SetupError::Parameter {
+                field,
+                value,
+                allowed,
+            } => {
+                let problem = Problem::Value {
+                    found: value.to_string(),
+                    allowed: allowed.to_owned(),
+                };
+                self.refuse(path.key(field), problem)
+            }
+            other => self.refuse(path, other),
+        }
     }
 
     fn refuse_at(&self, path: Path, problem: Problem, at_key: bool) -> Refusal {

@@ -1,8 +1,8 @@
 //! What a scenario file may say: one schema for TOML and JSON.
 
 mod conditions;
-mod criteria;
 mod gravity;
+mod named_parameters;
 mod numbering;
 mod parameters;
 mod rotation;
@@ -10,8 +10,8 @@ mod sleep;
 mod sources;
 
 pub use conditions::{Output, Stop};
-pub use criteria::{Criteria, OwnParts};
 pub use gravity::Gravity;
+pub use named_parameters::NamedParameters;
 pub use numbering::Numbering;
 pub use parameters::{Guards, Parameters, Threshold};
 pub use rotation::{Rotation, Turns};
@@ -64,12 +64,14 @@ pub struct Scenario {
     /// How exactly grains fall asleep and wake; the defaults are the model.
     #[serde(default)]
     pub sleep: Sleep,
-    /// Parameters of sleep criteria other than the paper's, by name.
-    #[serde(default, skip_serializing_if = "Criteria::is_empty")]
-    pub criteria: Criteria,
+    /// Parameters of sleep criteria other than the paper's, by name. Those of the one
+    /// that `sleep.criterion` names count.
+    #[serde(default, skip_serializing_if = "NamedParameters::is_empty")]
+    #[schemars(schema_with = "named_parameters::of_criteria")]
+    pub criteria: NamedParameters,
     /// Parameters of parts of one's own, by name: only for programs that have such.
-    #[serde(default, skip_serializing_if = "OwnParts::is_empty")]
-    pub parts: OwnParts,
+    #[serde(default, skip_serializing_if = "NamedParameters::is_empty")]
+    pub parts: NamedParameters,
     /// Sleeping grains check at intervals whether they are still supported.
     /// Left out: they don't.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -211,14 +213,19 @@ impl Scenario {
             .find_map(|source| source.one_by_one.as_ref())
     }
 
+    /// Whether a run ends when no grain is normal or falling: if nothing else is said,
+    /// where gravity brings all to rest and does not turn.
+    pub(super) fn ends_all_frozen(&self) -> bool {
+        let comes_to_rest = !matches!(self.gravity, Gravity::None) && self.rotation.is_none();
+        self.stop.all_frozen.unwrap_or(comes_to_rest)
+    }
+
     /// Writes every default that depends on other values where it can be read,
     /// so that the scenario says all that a run depends on.
     pub fn resolve(&mut self) {
         self.guards
             .exit_speed
             .get_or_insert(0.1 * self.parameters.elastic_speed);
-        self.stop
-            .all_frozen
-            .get_or_insert(!matches!(self.gravity, Gravity::None) && self.rotation.is_none());
+        self.stop.all_frozen = Some(self.ends_all_frozen());
     }
 }

@@ -250,18 +250,15 @@ impl Checker<'_> {
                 "a number from 0 to 8e9 is allowed",
             )?;
         }
-        let all_frozen = stop
-            .all_frozen
-            .unwrap_or(!matches!(scenario.gravity, Gravity::None));
         self.require(
             // Who never sleeps never comes to rest.
-            (all_frozen && scenario.sleep.criterion != "never")
+            (scenario.ends_all_frozen() && scenario.sleep.criterion != "never")
                 || stop.time.is_some()
                 || stop.events.is_some(),
             || key("stop"),
             "never reached",
-            "give stop.time or stop.events; without gravity, or if nobody sleeps, nothing comes to \
-             rest",
+            "give stop.time or stop.events; without gravity, where it turns, or if nobody sleeps, \
+             nothing comes to rest",
         )?;
         let output = &scenario.output;
         for (path, every) in [

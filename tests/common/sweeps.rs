@@ -282,6 +282,29 @@ fn a_run_that_stops_early_does_not_end_a_sweep() {
 }
 
 #[test]
+fn runs_that_another_version_has_finished_are_finished() {
+    let place = place();
+    let arguments = ["sweep", "bounce", "--until=5", "--seeds=2", "--out=s"];
+    expect(place.path(), 0, &arguments);
+    let folder = place.path().join("s");
+    let events = column(&folder, "events");
+    // Who did not count these asked nobody; what the other has done nobody knows.
+    forget_count(&folder.join("seed=1"), "support");
+    forget_count(&folder.join("seed=2"), "guard");
+    let before = content(&folder.join("seed=2"));
+    let said = expect(place.path(), 0, &arguments);
+    assert!(
+        said.contains("2 of 2 runs finished\n") && said.contains("missing field `guard`"),
+        "{said}"
+    );
+    assert_eq!(column(&folder, "ended"), ["time", "time"]);
+    assert_eq!(column(&folder, "events"), [events[0].as_str(), ""]);
+    let [none, missing] = column(&folder, "error").try_into().unwrap();
+    assert!(none.is_empty() && missing.contains("guard"), "{missing}");
+    assert_eq!(content(&folder.join("seed=2")), before);
+}
+
+#[test]
 fn another_sweep_into_the_same_folder_is_refused() {
     let place = place();
     let bounce = |more: &[&'static str]| {

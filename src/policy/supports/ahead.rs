@@ -1,13 +1,9 @@
 //! When a support will be lost: what there is to check between changes.
 
-use crate::model::{Commands, GravityCourse, Surroundings};
+use crate::model::{Commands, GravityCourse, SHORTEST_WAIT, Surroundings};
 use crate::particle::{Mode, ParticleId, Vector};
 use crate::policy::supports::{Check, CheckDue, EDGE, Supports, WALL_RANGE};
 use crate::time::Time;
-
-/// No check is asked for sooner than this, in √(d/g), but at the start of a sleep:
-/// time goes on, whatever rounding does.
-const SOONEST: f64 = 1.0e-9;
 
 /// Supports that move no faster than this, in √(gd), over the ground rest on it.
 const AT_REST: f64 = 1.0e-9;
@@ -59,7 +55,7 @@ impl Supports {
     ) {
         let wait = self.gravity_leaves_after(check, id, near);
         if wait.is_finite() {
-            commands.schedule(id, wait.max(SOONEST), self.next_check());
+            commands.schedule(id, wait.max(SHORTEST_WAIT), self.next_check());
         }
     }
 
@@ -153,11 +149,7 @@ fn leaves_after<const D: usize>(
     };
     // At the first step that turns it as far.
     let steps = libm::ceil(angle / (rate.abs() * step) - ROUND).max(1.0);
-    let made = libm::floor(now.units() / step);
-    let at = |count: f64| Time::from_units((made + count) * step);
-    // The quotient may be too small by one.
-    let past = if at(1.0) <= now { 1.0 } else { 0.0 };
-    at(steps + past) - now
+    Time::from_units((now.multiples_reached(step) + steps) * step) - now
 }
 
 #[cfg(test)]

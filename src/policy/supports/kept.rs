@@ -2,7 +2,7 @@
 
 use serde::{Deserialize, Serialize};
 
-use crate::model::{Commands, Response, Surroundings, Waking};
+use crate::model::{Commands, Reason, Response, Surroundings, Waking};
 use crate::particle::{Mode, Particle, ParticleId};
 use crate::policy::supports::{Check, CheckDue, Supports};
 
@@ -62,18 +62,10 @@ impl Kept {
         commands: &mut Commands<CheckDue>,
         waking: impl FnOnce(&Particle<D>) -> Waking<D>,
     ) -> Response<D> {
-        let grain = near.particle(id);
-        match (check, &self.0) {
-            (Some(check), Some(supports))
-                if grain.mode == Mode::Frozen && supports.is_current(event) =>
-            {
-                match supports.go_on(check, id, near, commands) {
-                    Ok(()) => Response::Keep,
-                    Err(reason) => Response::Wake(waking(&grain), reason),
-                }
-            }
-            _ => Response::Ignore,
-        }
+        self.respond(check, id, near, waking, |supports, check| {
+            let current = supports.is_current(event);
+            current.then(|| supports.go_on(check, id, near, commands))
+        })
     }
 
     /// The same for one that hears of a change of its supports.
@@ -84,15 +76,32 @@ impl Kept {
         near: &S,
         waking: impl FnOnce(&Particle<D>) -> Waking<D>,
     ) -> Response<D> {
+        self.respond(check, id, near, waking, |supports, check| {
+            Some(supports.verify(check, id, near))
+        })
+    }
+
+    /// What a grain does, if it sleeps, on what `look` finds of its supports; nothing if
+    /// that does not concern it.
+    fn respond<const D: usize, S: Surroundings<D>>(
+        &self,
+        check: Option<Check<'_>>,
+        id: ParticleId,
+        near: &S,
+        waking: impl FnOnce(&Particle<D>) -> Waking<D>,
+        look: impl FnOnce(&Supports, Check<'_>) -> Option<Result<(), Reason>>,
+    ) -> Response<D> {
+        let (Some(check), Some(supports)) = (check, &self.0) else {
+            return Response::Ignore;
+        };
         let grain = near.particle(id);
-        match (check, &self.0) {
-            (Some(check), Some(supports)) if grain.mode == Mode::Frozen => {
-                match supports.verify(check, id, near) {
-                    Ok(()) => Response::Keep,
-                    Err(reason) => Response::Wake(waking(&grain), reason),
-                }
-            }
-            _ => Response::Ignore,
+        if grain.mode != Mode::Frozen {
+            return Response::Ignore;
+        }
+        match look(supports, check) {
+            Some(Ok(())) => Response::Keep,
+            Some(Err(reason)) => Response::Wake(waking(&grain), reason),
+            None => Response::Ignore,
         }
     }
 }

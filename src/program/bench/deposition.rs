@@ -3,21 +3,18 @@
 use serde::Serialize;
 
 use crate::analysis::packing_fraction;
-use crate::engine::{Counts, Limits, Simulation, StopReason};
+use crate::engine::{Counts, Limits, StopReason};
 use crate::error::SetupError;
-use crate::model::Observer;
 use crate::observe::TrajectoryHash;
-use crate::policy::Criterion;
-use crate::program::bench::MANY;
 use crate::program::bench::arguments::DepositionArguments;
 use crate::program::bench::gas::bytes_of;
 use crate::program::bench::memory::Memory;
-use crate::program::bench::timing::{Cost, timed};
 use crate::program::error::ProgramError;
 use crate::program::processor::ProcessorClock;
 use crate::program::progress::Progress;
+use crate::program::rain::{Rain, RainSimulation, sampled};
 use crate::program::show::say_result;
-use crate::scenario::{Assignment, GravityModel, Preset, ScenarioError, Start, read_text};
+use crate::program::timing::{Cost, timed};
 use crate::time::Time;
 
 /// How often the grains are counted by mode, in √(d/g).
@@ -26,123 +23,12 @@ const SAMPLED: f64 = 0.25;
 /// time of the last landing, as in the summaries of runs.
 const MEAN: [f64; 2] = [0.25, 0.8];
 
-/// The paper's grains a square diameter of the base: so high is the rain.
-const PAPER_COUNT: f64 = 4800.0;
-const PAPER_WIDTH: f64 = 10.0;
-
-/// The rain and the base of the preset `deposition`, as large as wanted.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Rain {
-    pub(super) count: usize,
-    /// Edge of the base, in d.
-    pub(super) width: f64,
-    /// V_t, for falling asleep and waking, in √(gd).
-    pub(super) sleep_speed: f64,
-    /// V_c, in √(gd).
-    pub(super) elastic_speed: f64,
-    pub(super) seed: u64,
-}
-
-impl Rain {
-    /// The width at which a rain of `count` grains is as high as the paper's.
-    pub(super) fn usual_width(count: usize) -> f64 {
-        PAPER_WIDTH * (count as f64 / PAPER_COUNT).sqrt()
-    }
-
-    /// About when the last grain lands, in √(d/g).
-    pub(super) fn last_landing(&self) -> f64 {
-        let share = self.count as f64 / PAPER_COUNT * (PAPER_WIDTH / self.width).powi(2);
-        190.0 * share + 5.0
-    }
-
-    /// The grains, all falling, above their base.
-    pub(super) fn simulation(
-        &self,
-        memory: &Memory,
-    ) -> Result<Simulation<GravityModel<Criterion, 3>, 3>, ProgramError> {
-        if self.width < 2.0 {
-            return Err(SetupError::Parameter {
-                field: "width",
-                value: self.width,
-                allowed: "2 or more is allowed, two diameters; the usual width is less for fewer \
-                          than 192 grains",
-            }
-            .into());
-        }
-        let preset = Preset::named("deposition").ok_or_else(|| ProgramError::UnknownScenario {
-            name: "deposition".to_owned(),
-            hint: String::new(),
-        })?;
-        let mut origin = preset.origin();
-        let side = format!("{{ periodic = {{ length = {:?} }} }}", self.width);
-        let numbering = if self.count > MANY { "space" } else { "drawn" };
-        let assignments = [
-            format!("numbering=\"{numbering}\""),
-            format!("seed={}", self.seed),
-            format!("boundaries=[{side}, {side}, \"open\"]"),
-            format!("grains.1.rain.count={}", self.count),
-            format!("parameters.sleep_speed={:?}", self.sleep_speed),
-            format!("parameters.wake_speed={:?}", self.sleep_speed),
-            format!("parameters.elastic_speed={:?}", self.elastic_speed),
-        ];
-        origin.assignments = assignments
-            .iter()
-            .filter_map(|text| text.parse::<Assignment>().ok())
-            .collect();
-        let scenario = read_text(&origin).map_err(ScenarioError::from)?;
-        let start = Start::<3>::new(&origin, &scenario)?;
-        memory.forget_peak();
-        let model = scenario.gravity_model(
-            Criterion::SlowDescent(scenario.slow_descent()),
-            start.boundary,
-        );
-        Ok(Simulation::with_settings(
-            model,
-            start.grains,
-            scenario.settings(),
-        )?)
-    }
-}
-
-/// Runs from sample to sample, a multiple of `step` in simulated time, until a
-/// limit is reached, and shows each; samples are not timed.
-pub(super) fn sampled<O: Observer<3>>(
-    simulation: &mut Simulation<GravityModel<Criterion, 3>, 3>,
-    step: f64,
-    limits: &Limits,
-    observer: &mut O,
-    mut show: impl FnMut(&Simulation<GravityModel<Criterion, 3>, 3>, Cost) -> Result<(), ProgramError>,
-) -> Result<(Cost, StopReason), ProgramError> {
-    let before = simulation.counts().total();
-    let mut cost = Cost::default();
-    show(simulation, cost)?;
-    let mut sample = (simulation.time().units() / step).floor() + 1.0;
-    loop {
-        let end = Time::from_units(sample * step).min(limits.time);
-        let clock = ProcessorClock::start();
-        let reason = simulation.run(
-            &Limits {
-                time: end,
-                ..*limits
-            },
-            observer,
-        );
-        cost.seconds += clock.seconds();
-        cost.events = simulation.counts().total() - before;
-        show(simulation, cost)?;
-        if reason != StopReason::Time || end >= limits.time {
-            return Ok((cost, reason));
-        }
-        sample += 1.0;
-    }
-}
-
 /// How many grains are normal, and falling, at equal intervals.
 #[derive(Default)]
 struct Samples(Vec<(usize, usize)>);
 
 impl Samples {
-    fn add(&mut self, simulation: &Simulation<GravityModel<Criterion, 3>, 3>) {
+    fn add(&mut self, simulation: &RainSimulation) {
         let modes = simulation.mode_counts();
         self.0.push((modes.normal, modes.falling));
     }
@@ -171,11 +57,7 @@ impl Window {
     }
 
     /// Goes to where the window begins.
-    fn enter(
-        self,
-        simulation: &mut Simulation<GravityModel<Criterion, 3>, 3>,
-        progress: &mut Progress,
-    ) -> (Cost, StopReason) {
+    fn enter(self, simulation: &mut RainSimulation, progress: &mut Progress) -> (Cost, StopReason) {
         let Some(from) = self.from else {
             return (Cost::default(), StopReason::Time);
         };
@@ -188,7 +70,7 @@ impl Window {
     }
 
     /// From here on.
-    fn limits(self, simulation: &Simulation<GravityModel<Criterion, 3>, 3>) -> Limits {
+    fn limits(self, simulation: &RainSimulation) -> Limits {
         let total = simulation.counts().total();
         Limits {
             time: self.until.map_or(Time::NEVER, Time::from_units),
@@ -281,7 +163,7 @@ fn run(
 ) -> Result<(Outcome, u8), ProgramError> {
     let memory = Memory::before();
     let clock = ProcessorClock::start();
-    let mut simulation = rain.simulation(&memory)?;
+    let mut simulation = rain.simulation(|| memory.forget_peak())?;
     let setup_seconds = clock.seconds();
     let (spent_before, reached) = window.enter(&mut simulation, progress);
     if reached != StopReason::Time {
@@ -301,7 +183,7 @@ fn run(
             &mut simulation,
             SAMPLED,
             &limits,
-            &mut (),
+            f64::INFINITY,
             |simulation, _| {
                 samples.add(simulation);
                 let time = simulation.time().units();
@@ -369,7 +251,7 @@ fn hash(
     window: Window,
     progress: &mut Progress,
 ) -> Result<TrajectoryHash, ProgramError> {
-    let mut simulation = rain.simulation(&Memory::before())?;
+    let mut simulation = rain.simulation(|| {})?;
     window.enter(&mut simulation, progress);
     let limits = window.limits(&simulation);
     let mut hash = TrajectoryHash::new();

@@ -17,11 +17,11 @@ use crate::predict::Polynomial;
 use crate::program::bench::MANY;
 use crate::program::bench::arguments::{GasArguments, GasStart};
 use crate::program::bench::memory::Memory;
-use crate::program::bench::timing::timed;
 use crate::program::error::ProgramError;
 use crate::program::processor::ProcessorClock;
 use crate::program::progress::Progress;
 use crate::program::show::say_result;
+use crate::program::timing::timed;
 use crate::setup::{Crystal, Gas, seeded, sort_in_space};
 use crate::time::Time;
 

@@ -4,11 +4,10 @@
 use crate::engine::{Limits, StopReason};
 use crate::error::SetupError;
 use crate::program::bench::arguments::GrowthArguments;
-use crate::program::bench::deposition::{Rain, sampled};
-use crate::program::bench::memory::Memory;
 use crate::program::bench::table::Table;
 use crate::program::error::ProgramError;
 use crate::program::progress::Progress;
+use crate::program::rain::{Rain, sampled};
 use crate::time::Time;
 
 const COLUMNS: [&str; 7] = [
@@ -49,7 +48,7 @@ pub(super) fn measure(arguments: &GrowthArguments) -> Result<u8, ProgramError> {
             elastic_speed,
             seed: arguments.seed,
         };
-        let mut simulation = rain.simulation(&Memory::before())?;
+        let mut simulation = rain.simulation(|| {})?;
         // Without sleep it would take for ever.
         let until = match arguments.until {
             Some(until) => Time::from_units(until),
@@ -67,7 +66,7 @@ pub(super) fn measure(arguments: &GrowthArguments) -> Result<u8, ProgramError> {
             &mut simulation,
             arguments.step,
             &limits,
-            &mut (),
+            f64::INFINITY,
             |simulation, cost| {
                 let modes = simulation.mode_counts();
                 let time = simulation.time().units();

@@ -5,16 +5,13 @@ use crate::engine::{Limits, Simulation};
 use crate::error::SetupError;
 use crate::model::Parts;
 use crate::particle::{Mode, Particle, Vector};
-use crate::policy::Criterion;
 use crate::program::bench::arguments::{GasStart, ScalingArguments, ScalingSubject};
-use crate::program::bench::deposition::Rain;
 use crate::program::bench::gas::{Plan, usual_collisions, usual_equilibration};
-use crate::program::bench::memory::Memory;
 use crate::program::bench::table::Table;
-use crate::program::bench::timing::{Cost, timed};
 use crate::program::error::ProgramError;
 use crate::program::progress::Progress;
-use crate::scenario::GravityModel;
+use crate::program::rain::{Rain, RainSimulation};
+use crate::program::timing::{Cost, timed};
 use crate::setup::{Gas, seeded};
 use crate::time::Time;
 
@@ -105,7 +102,7 @@ fn heaps(arguments: &ScalingArguments, table: &mut Table) -> Result<(), ProgramE
     let buried: &[usize] = if small { &BURIED[..3] } else { &BURIED };
 
     let mut progress = Progress::new(false, None);
-    let mut growing = rain.simulation(&Memory::before())?;
+    let mut growing = rain.simulation(|| {})?;
     timed(
         &mut growing,
         &Limits::until(half_way),
@@ -144,10 +141,7 @@ fn heaps(arguments: &ScalingArguments, table: &mut Table) -> Result<(), ProgramE
 }
 
 /// A simulation of these grains, otherwise like another.
-fn on_top_of(
-    heap: Vec<Particle<3>>,
-    like: &Simulation<GravityModel<Criterion, 3>, 3>,
-) -> Result<Simulation<GravityModel<Criterion, 3>, 3>, SetupError> {
+fn on_top_of(heap: Vec<Particle<3>>, like: &RainSimulation) -> Result<RainSimulation, SetupError> {
     let model = like.model();
     let model = Parts {
         dynamics: model.dynamics,
@@ -212,7 +206,7 @@ mod tests {
             elastic_speed: 1.0e-3,
             seed: 1,
         };
-        let mut growing = rain.simulation(&Memory::before()).unwrap();
+        let mut growing = rain.simulation(|| {}).unwrap();
         growing.run(&Limits::until(Time::from_units(4.0)), &mut ());
         let hashes = [0, 100, 1000].map(|count| {
             let mut heap = growing.snapshot();

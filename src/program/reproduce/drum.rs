@@ -139,8 +139,7 @@ pub(super) fn map(context: &Context<'_>) -> Result<Report, ProgramError> {
         .map(|row| row.normal / (row.normal + row.frozen))
         .collect();
     let share = blocked_mean(&shares);
-    let angle = libm::atan(surface.slope).to_degrees();
-    let error = (surface.slope_error / (1.0 + surface.slope * surface.slope)).to_degrees();
+    let (angle, error) = surface.0.angle();
     let of = "Fig. 6";
     Ok(Report {
         rows: vec![

@@ -1,16 +1,14 @@
 //! Fig. 5: processor time while a deposit grows.
 
 use crate::analysis::line_fit;
-use crate::engine::{Limits, Simulation, StopReason};
+use crate::engine::Limits;
 use crate::plot::{Axis, Chart, Series};
-use crate::policy::Criterion;
 use crate::program::error::ProgramError;
 use crate::program::estimate::Estimate;
-use crate::program::load::open;
-use crate::program::processor::ProcessorClock;
+use crate::program::rain::{PAPER_WIDTH, Rain, sampled};
+use crate::program::reproduce::effort::Effort;
 use crate::program::reproduce::row::Row;
-use crate::program::reproduce::{Context, Report, assigned, csv_of};
-use crate::scenario::{Start, read_text};
+use crate::program::reproduce::{Context, Report, csv_of};
 use crate::time::Time;
 
 /// Time between two looks at the clock, in √(d/g).
@@ -22,38 +20,35 @@ const LONGEST: f64 = 600.0;
 type Look = [f64; 3];
 
 /// A deposit with V_sleep = V_wakeup = `threshold`, looked at while it grows.
-fn curve(context: &Context<'_>, threshold: f64, until: f64) -> Result<Vec<Look>, ProgramError> {
-    let (_, mut origin) = open("deposition", context.program)?;
-    origin.assignments = assigned(&[
-        format!("grains.1.rain.count={}", context.effort.growing.0),
-        format!(
-            "parameters.elastic_speed={:?}",
-            context.effort.elastic_speed
-        ),
-        format!("parameters.sleep_speed={threshold:?}"),
-        format!("parameters.wake_speed={threshold:?}"),
-    ])?;
-    let scenario = read_text(&origin)?;
-    let start = Start::<3>::new(&origin, &scenario)?;
-    let policy = Criterion::SlowDescent(scenario.slow_descent());
-    let model = scenario.gravity_model(policy, start.boundary.clone());
-    let mut simulation = Simulation::with_settings(model, start.grains, scenario.settings())?;
-    let clock = ProcessorClock::start();
+fn curve(effort: &Effort, threshold: f64, until: f64) -> Result<Vec<Look>, ProgramError> {
+    let rain = Rain {
+        count: effort.growing.0,
+        width: PAPER_WIDTH,
+        sleep_speed: threshold,
+        elastic_speed: effort.elastic_speed,
+        seed: 1,
+    };
+    let limits = Limits {
+        time: Time::from_units(until),
+        all_frozen: true,
+        ..Limits::default()
+    };
     let mut looks = Vec::new();
-    let mut time = 0.0;
-    while time < until && clock.seconds() < LONGEST {
-        time += EVERY;
-        let limits = Limits {
-            time: Time::from_units(time),
-            all_frozen: true,
-            ..Limits::default()
-        };
-        let why = simulation.run(&limits, &mut ());
-        looks.push([time, clock.seconds(), simulation.counts().total() as f64]);
-        if why != StopReason::Time {
-            break;
-        }
-    }
+    let mut simulation = rain.simulation(|| {})?;
+    sampled(
+        &mut simulation,
+        EVERY,
+        &limits,
+        LONGEST,
+        |simulation, cost| {
+            let time = simulation.time().units();
+            // The start has no place on logarithmic axes.
+            if time > 0.0 {
+                looks.push([time, cost.seconds, cost.events as f64]);
+            }
+            Ok(())
+        },
+    )?;
     Ok(looks)
 }
 
@@ -86,7 +81,7 @@ pub(super) fn report(context: &Context<'_>) -> Result<Report, ProgramError> {
     );
     let (mut rows, mut table) = (Vec::new(), Vec::new());
     for (threshold, until) in [(0.0, without), (0.05, with), (0.1, with)] {
-        let looks = curve(context, threshold, until)?;
+        let looks = curve(&context.effort, threshold, until)?;
         for [time, seconds, events] in &looks {
             table.push(
                 [threshold, *time, *seconds, *events]

@@ -12,7 +12,7 @@ use crate::program::error::ProgramError;
 use crate::program::load::open;
 use crate::program::reproduce::assigned;
 use crate::program::run::seed_is;
-use crate::program::sweep::{Outcome, Tasks};
+use crate::program::sweep::Tasks;
 use crate::scenario::{Origin, Scenario, read_text};
 
 /// A preset with some values changed.
@@ -92,13 +92,12 @@ pub(super) struct Finished<'a> {
 impl Finished<'_> {
     /// How a run ended.
     pub(super) fn summary(&self, run: &RunSpec) -> Result<Summary, ProgramError> {
-        let outcome = Outcome::read(&self.folder.join(&run.name));
-        outcome
-            .summary()
-            .cloned()
-            .ok_or_else(|| ProgramError::Reproduction {
-                what: format!("the run {} has left no summary", run.name),
-            })
+        Summary::of(&self.folder.join(&run.name)).map_err(|error| ProgramError::Reproduction {
+            what: format!(
+                "the run {} has left no summary that can be read: {error}",
+                run.name
+            ),
+        })
     }
 
     /// Counts over time.

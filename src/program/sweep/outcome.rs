@@ -1,9 +1,8 @@
 //! What has become of runs: `runs.csv`, and a table for people.
 
-use std::fs;
 use std::path::Path;
 
-use crate::output::{StoppedBy, Summary};
+use crate::output::{Ending, StoppedBy, Summary};
 use crate::program::error::ProgramError;
 use crate::program::estimate::{Estimate, significant};
 use crate::program::sweep::names::shortened;
@@ -12,13 +11,17 @@ use crate::program::table::table;
 
 /// So many combinations are shown to people.
 const MOST_ROWS: usize = 60;
-/// So many runs that have stopped early are named.
+/// So many runs that have stopped early, or have left no figures, are named.
 const MOST_NAMED: usize = 10;
 
 /// What is known of a run.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(in crate::program) struct Outcome {
+    /// Why it ended, if it has.
+    ended: Option<StoppedBy>,
     summary: Option<Summary>,
+    /// Why it has no summary, if it has ended: another version of the program has run it.
+    unread: Option<String>,
     /// Why it could not be carried on with: the exit code and a message.
     failure: Option<(u8, String)>,
 }
@@ -26,16 +29,19 @@ pub(in crate::program) struct Outcome {
 impl Outcome {
     /// What a run has left in its folder.
     pub(in crate::program) fn read(folder: &Path) -> Self {
-        let text = fs::read_to_string(folder.join("summary.json"));
+        let Some(ending) = Ending::of(folder) else {
+            return Outcome::default();
+        };
+        let (summary, unread) = match Summary::of(folder) {
+            Ok(summary) => (Some(summary), None),
+            Err(error) => (None, Some(format!("(its figures can't be read: {error})"))),
+        };
         Outcome {
-            summary: text.ok().and_then(|text| serde_json::from_str(&text).ok()),
+            ended: Some(ending.stop_reason),
+            summary,
+            unread,
             failure: None,
         }
-    }
-
-    /// Its summary, if it has one.
-    pub(in crate::program) fn summary(&self) -> Option<&Summary> {
-        self.summary.as_ref()
     }
 
     /// What is known after an attempt to carry it out.
@@ -48,11 +54,7 @@ impl Outcome {
 
     /// Whether it has come to an end of its own.
     pub(in crate::program) fn is_finished(&self) -> bool {
-        self.failure.is_none()
-            && self
-                .summary
-                .as_ref()
-                .is_some_and(|summary| summary.stop_reason.is_finished())
+        self.failure.is_none() && self.ended.is_some_and(StoppedBy::is_finished)
     }
 
     /// Whether it has collapsed: if it went on, it would do so again.
@@ -75,7 +77,7 @@ impl Outcome {
         if self.failure.is_some() {
             return "error";
         }
-        match self.summary.as_ref().map(|summary| summary.stop_reason) {
+        match self.ended {
             None => "unfinished",
             Some(StoppedBy::AllFrozen) => "all_frozen",
             Some(StoppedBy::Time) => "time",
@@ -90,7 +92,7 @@ impl Outcome {
         let error = || self.summary.as_ref()?.error.as_deref();
         match &self.failure {
             Some((_, message)) => message,
-            None => error().unwrap_or_default(),
+            None => error().or(self.unread.as_deref()).unwrap_or_default(),
         }
     }
 }
@@ -249,7 +251,8 @@ pub(super) fn for_people(plan: &Plan, outcomes: &[Outcome]) -> String {
             .iter()
             .map(|&number| shortened(&values[number], 40))
             .collect();
-        row.push(format!("{} of {seeds}", finished.len()));
+        let count = runs.iter().filter(|run| run.is_finished()).count();
+        row.push(format!("{count} of {seeds}"));
         row.extend(figures.iter().map(|(figure, _)| {
             let samples: Vec<f64> = finished.iter().filter_map(figure.of).collect();
             cell(&samples, figure)
@@ -263,9 +266,9 @@ pub(super) fn for_people(plan: &Plan, outcomes: &[Outcome]) -> String {
     text
 }
 
-/// Names the runs that have stopped early, a line each.
+/// Names the runs that have stopped early, or have left no figures, a line each.
 pub(super) fn failures(plan: &Plan, outcomes: &[Outcome]) -> String {
-    let failed = |(_, outcome): &(usize, &Outcome)| outcome.is_failed();
+    let failed = |(_, outcome): &(usize, &Outcome)| outcome.is_failed() || outcome.unread.is_some();
     let failed: Vec<_> = outcomes.iter().enumerate().filter(failed).collect();
     let mut text: String = failed
         .iter()

@@ -1,6 +1,5 @@
 //! The sources of grains.
 
-use crate::error::SetupError;
 use crate::scenario::error::{Problem, Refusal};
 use crate::scenario::path::Path;
 use crate::scenario::schema::{Dimension, Drum, Gravity, Side, Source, SourceKind};
@@ -171,15 +170,7 @@ impl Checker<'_> {
             Dimension::Two => drum_of.validated::<2>().map(drop),
             Dimension::Three => drum_of.validated::<3>().map(drop),
         };
-        match made {
-            Ok(()) => {}
-            Err(SetupError::Parameter {
-                field,
-                value,
-                allowed,
-            }) => return self.require(false, || inside.clone().key(field), value, allowed),
-            Err(error) => return Err(self.origin.refuse(inside.clone(), error)),
-        }
+        made.map_err(|error| self.origin.refuse_part(inside.clone(), error))?;
         let holds = drum.level.abs() <= drum.radius;
         let allowed = "between the lowest and the highest point of the drum is allowed";
         self.require(holds, || inside.clone().key("level"), drum.level, allowed)?;
@@ -270,25 +261,14 @@ impl Checker<'_> {
 
     fn sizes(&self, sizes: &Sizes, inside: &Path) -> Result<(), Refusal> {
         let path = inside.clone().key("sizes");
-        match sizes.validated() {
-            Ok(_) => {
-                let (least, most) = (sizes.smallest(), sizes.largest());
-                let holds = least >= 1.0e-6 && most <= 1.0e6;
-                let found = format!("between {least} and {most}");
-                self.require(
-                    holds,
-                    || path,
-                    found,
-                    "diameters from 1e-6 to 1e6 are allowed",
-                )
-            }
-            Err(SetupError::Parameter {
-                field,
-                value,
-                allowed,
-            }) => self.require(false, || path.key(field), value, allowed),
-            Err(error) => Err(self.origin.refuse(path, error)),
-        }
+        sizes
+            .validated()
+            .map_err(|error| self.origin.refuse_part(path.clone(), error))?;
+        let (least, most) = (sizes.smallest(), sizes.largest());
+        let holds = least >= 1.0e-6 && most <= 1.0e6;
+        let found = format!("between {least} and {most}");
+        let allowed = "diameters from 1e-6 to 1e6 are allowed";
+        self.require(holds, || path, found, allowed)
     }
 
     /// The extent across the last axis, in d^(D−1), which generators need to be

@@ -1,7 +1,7 @@
 //! Where the grains of a drum are, and how fast, as seen from outside.
 
 use crate::analysis::{
-    Bins, Container, Mean, blocked_mean, fraction_map, line_fit, surface_of_map,
+    Bins, Container, LineFit, Mean, blocked_mean, fraction_map, line_fit, surface_of_map,
 };
 use crate::output::Frame;
 use crate::particle::{Mode, Particle, Vector};
@@ -108,17 +108,17 @@ pub(super) fn field(drum: &Turned, frames: &[Frame]) -> Result<Field, ProgramErr
     })
 }
 
-/// The free surface at the centre: its height, and its slope with an error.
-pub(super) struct Surface {
-    pub(super) height: f64,
-    pub(super) slope: f64,
-    pub(super) slope_error: f64,
-}
+/// The free surface at the centre: a line through heights above the axis, which is
+/// at x = 0.
+pub(super) struct Surface(pub(super) LineFit);
 
 impl Surface {
     /// Its distance from the axis, below it.
     pub(super) fn depth(&self) -> f64 {
-        -self.height / libm::sqrt(1.0 + self.slope * self.slope)
+        let LineFit {
+            intercept, slope, ..
+        } = self.0;
+        -intercept / libm::sqrt(1.0 + slope * slope)
     }
 }
 
@@ -131,11 +131,7 @@ pub(super) fn surface(drum: &Turned, field: &Field) -> Result<Surface, ProgramEr
     let fit = line_fit(&near, None).ok_or_else(|| ProgramError::Reproduction {
         what: format!("{} has no free surface at its centre", drum.run.name),
     })?;
-    Ok(Surface {
-        height: fit.intercept,
-        slope: fit.slope,
-        slope_error: fit.slope_error,
-    })
+    Ok(Surface(fit))
 }
 
 /// Mean velocities along the surface by depth below it, in a thin slab across it
@@ -147,8 +143,13 @@ pub(super) fn profile(
 ) -> Result<(Bins, Vec<Mean>), ProgramError> {
     let deepest = libm::floor(drum.radius - 1.0);
     let bins = Bins::of_width(0.0, deepest, BIN)?;
-    let length = libm::sqrt(1.0 + surface.slope * surface.slope);
-    let (cos, sin) = (1.0 / length, surface.slope / length);
+    let LineFit {
+        intercept: height,
+        slope,
+        ..
+    } = surface.0;
+    let length = libm::sqrt(1.0 + slope * slope);
+    let (cos, sin) = (1.0 / length, slope / length);
     let mut columns = vec![Vec::new(); bins.count()];
     for frame in counted(drum, frames) {
         let mut sums = vec![(0.0, 0.0); bins.count()];
@@ -156,7 +157,7 @@ pub(super) fn profile(
             if grain.mode == Mode::Fixed {
                 continue;
             }
-            let (x, z) = (grain.position[0], grain.position[2] - surface.height);
+            let (x, z) = (grain.position[0], grain.position[2] - height);
             let along = x * cos + z * sin;
             let depth = x * sin - z * cos;
             let (true, Some(bin)) = (along.abs() < SLAB, bins.bin_of(depth)) else {
@@ -164,7 +165,7 @@ pub(super) fn profile(
             };
             // Down the slope counts positive.
             let speed = grain.velocity[0] * cos + grain.velocity[2] * sin;
-            let down = if surface.slope > 0.0 { -speed } else { speed };
+            let down = if slope > 0.0 { -speed } else { speed };
             sums[bin].0 += down;
             sums[bin].1 += 1.0;
         }
