@@ -318,6 +318,10 @@ fn bad_files_of_grains_are_refused() {
             "1\nProperties=pos:R:3:mode:S:1\n0 0 0 awake\n",
             "mode is `awake`",
         ),
+        (
+            "1\nProperties=pos:R:3:type:S:1\n0 0 0 Si\n",
+            "type is `Si`; normal, falling, frozen or fixed is wanted",
+        ),
         ("1\nProperties=pos:R\n0 0 0\n", "name:kind:width"),
         (
             "2\nProperties=id:I:1:pos:R:3\n1 0 0 0\n1 5 0 0\n",

@@ -190,7 +190,7 @@ fn a_deposition_leaves_a_folder() {
     let end = told["time"].as_f64().unwrap();
     assert_eq!(headers.len(), (end / 2.0).floor() as usize + 2);
     assert!(headers[1].contains("pbc=\"T T F\"") && headers[1].contains("Time=2 "));
-    assert!(headers[1].contains("Properties=id:I:1:pos:R:3:velo:R:3:radius:R:1:mass:R:1:mode:S:1"));
+    assert!(headers[1].contains("Properties=id:I:1:pos:R:3:velo:R:3:radius:R:1:mass:R:1:type:S:1"));
 }
 
 /// What is written, how often, and in how many slices, changes nothing; the
