@@ -1,6 +1,10 @@
 //! Readers of scenarios and of grains against a great many inputs that are
 //! nearly right: no panic, no hang, and messages that help.
 
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::time::{Duration, Instant};
+
 use crate::mutate::{mutate_bytes, mutate_lines, mutate_tree};
 use grainfall::Time;
 use grainfall::engine::{Limits, Simulation, StopReason};
@@ -11,9 +15,6 @@ use grainfall::scenario::{
 };
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
-use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
-use std::time::{Duration, Instant};
 
 /// Small scenarios that use what the presets don't.
 const MORE: [&str; 3] = [
