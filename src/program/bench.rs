@@ -5,6 +5,7 @@ mod deposition;
 mod gas;
 mod growth;
 mod memory;
+mod rain;
 mod scaling;
 mod table;
 mod timing;
