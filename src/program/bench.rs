@@ -5,7 +5,6 @@ mod deposition;
 mod gas;
 mod growth;
 mod memory;
-mod rain;
 mod scaling;
 mod table;
 mod timing;

@@ -1,35 +1,148 @@
 //! `grainfall bench deposition`: events of the paper's rain.
 
-mod outcome;
+use serde::Serialize;
 
 use crate::analysis::packing_fraction;
-use crate::engine::{Counts, Limits, StopReason};
+use crate::engine::{Counts, Limits, Simulation, StopReason};
 use crate::error::SetupError;
+use crate::model::Observer;
 use crate::observe::TrajectoryHash;
+use crate::policy::Criterion;
+use crate::program::bench::MANY;
 use crate::program::bench::arguments::DepositionArguments;
-use crate::program::bench::deposition::outcome::Outcome;
+use crate::program::bench::gas::bytes_of;
 use crate::program::bench::memory::Memory;
-use crate::program::bench::rain::{Deposit, Rain};
-use crate::program::bench::timing::{Cost, sampled, timed};
+use crate::program::bench::timing::{Cost, timed};
 use crate::program::error::ProgramError;
 use crate::program::processor::ProcessorClock;
 use crate::program::progress::Progress;
 use crate::program::show::say_result;
+use crate::scenario::{Assignment, GravityModel, Preset, ScenarioError, Start, read_text};
 use crate::time::Time;
 
 /// How often the grains are counted by mode, in √(d/g).
 const SAMPLED: f64 = 0.25;
-
 /// The mean number of normal grains is taken from and up to these shares of the
 /// time of the last landing, as in the summaries of runs.
 const MEAN: [f64; 2] = [0.25, 0.8];
+
+/// The paper's grains a square diameter of the base: so high is the rain.
+const PAPER_COUNT: f64 = 4800.0;
+const PAPER_WIDTH: f64 = 10.0;
+
+/// The rain and the base of the preset `deposition`, as large as wanted.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Rain {
+    pub(super) count: usize,
+    /// Edge of the base, in d.
+    pub(super) width: f64,
+    /// V_t, for falling asleep and waking, in √(gd).
+    pub(super) sleep_speed: f64,
+    /// V_c, in √(gd).
+    pub(super) elastic_speed: f64,
+    pub(super) seed: u64,
+}
+
+impl Rain {
+    /// The width at which a rain of `count` grains is as high as the paper's.
+    pub(super) fn usual_width(count: usize) -> f64 {
+        PAPER_WIDTH * (count as f64 / PAPER_COUNT).sqrt()
+    }
+
+    /// About when the last grain lands, in √(d/g).
+    pub(super) fn last_landing(&self) -> f64 {
+        let share = self.count as f64 / PAPER_COUNT * (PAPER_WIDTH / self.width).powi(2);
+        190.0 * share + 5.0
+    }
+
+    /// The grains, all falling, above their base.
+    pub(super) fn simulation(
+        &self,
+        memory: &Memory,
+    ) -> Result<Simulation<GravityModel<Criterion, 3>, 3>, ProgramError> {
+        if self.width < 2.0 {
+            return Err(SetupError::Parameter {
+                field: "width",
+                value: self.width,
+                allowed: "2 or more is allowed, two diameters; the usual width is less for fewer \
+                          than 192 grains",
+            }
+            .into());
+        }
+        let preset = Preset::named("deposition").ok_or_else(|| ProgramError::UnknownScenario {
+            name: "deposition".to_owned(),
+            hint: String::new(),
+        })?;
+        let mut origin = preset.origin();
+        let side = format!("{{ periodic = {{ length = {:?} }} }}", self.width);
+        let numbering = if self.count > MANY { "space" } else { "drawn" };
+        let assignments = [
+            format!("numbering=\"{numbering}\""),
+            format!("seed={}", self.seed),
+            format!("boundaries=[{side}, {side}, \"open\"]"),
+            format!("grains.1.rain.count={}", self.count),
+            format!("parameters.sleep_speed={:?}", self.sleep_speed),
+            format!("parameters.wake_speed={:?}", self.sleep_speed),
+            format!("parameters.elastic_speed={:?}", self.elastic_speed),
+        ];
+        origin.assignments = assignments
+            .iter()
+            .filter_map(|text| text.parse::<Assignment>().ok())
+            .collect();
+        let scenario = read_text(&origin).map_err(ScenarioError::from)?;
+        let start = Start::<3>::new(&origin, &scenario)?;
+        memory.forget_peak();
+        let model = scenario.gravity_model(
+            Criterion::SlowDescent(scenario.slow_descent()),
+            start.boundary,
+        );
+        Ok(Simulation::with_settings(
+            model,
+            start.grains,
+            scenario.settings(),
+        )?)
+    }
+}
+
+/// Runs from sample to sample, a multiple of `step` in simulated time, until a
+/// limit is reached, and shows each; samples are not timed.
+pub(super) fn sampled<O: Observer<3>>(
+    simulation: &mut Simulation<GravityModel<Criterion, 3>, 3>,
+    step: f64,
+    limits: &Limits,
+    observer: &mut O,
+    mut show: impl FnMut(&Simulation<GravityModel<Criterion, 3>, 3>, Cost) -> Result<(), ProgramError>,
+) -> Result<(Cost, StopReason), ProgramError> {
+    let before = simulation.counts().total();
+    let mut cost = Cost::default();
+    show(simulation, cost)?;
+    let mut sample = (simulation.time().units() / step).floor() + 1.0;
+    loop {
+        let end = Time::from_units(sample * step).min(limits.time);
+        let clock = ProcessorClock::start();
+        let reason = simulation.run(
+            &Limits {
+                time: end,
+                ..*limits
+            },
+            observer,
+        );
+        cost.seconds += clock.seconds();
+        cost.events = simulation.counts().total() - before;
+        show(simulation, cost)?;
+        if reason != StopReason::Time || end >= limits.time {
+            return Ok((cost, reason));
+        }
+        sample += 1.0;
+    }
+}
 
 /// How many grains are normal, and falling, at equal intervals.
 #[derive(Default)]
 struct Samples(Vec<(usize, usize)>);
 
 impl Samples {
-    fn add(&mut self, simulation: &Deposit) {
+    fn add(&mut self, simulation: &Simulation<GravityModel<Criterion, 3>, 3>) {
         let modes = simulation.mode_counts();
         self.0.push((modes.normal, modes.falling));
     }
@@ -58,7 +171,11 @@ impl Window {
     }
 
     /// Goes to where the window begins.
-    fn enter(self, simulation: &mut Deposit, progress: &mut Progress) -> (Cost, StopReason) {
+    fn enter(
+        self,
+        simulation: &mut Simulation<GravityModel<Criterion, 3>, 3>,
+        progress: &mut Progress,
+    ) -> (Cost, StopReason) {
         let Some(from) = self.from else {
             return (Cost::default(), StopReason::Time);
         };
@@ -71,7 +188,7 @@ impl Window {
     }
 
     /// From here on.
-    fn limits(self, simulation: &Deposit) -> Limits {
+    fn limits(self, simulation: &Simulation<GravityModel<Criterion, 3>, 3>) -> Limits {
         let total = simulation.counts().total();
         Limits {
             time: self.until.map_or(Time::NEVER, Time::from_units),
@@ -81,6 +198,39 @@ impl Window {
             all_frozen: true,
         }
     }
+}
+
+/// What came out.
+#[derive(Debug, Serialize)]
+struct Outcome {
+    benchmark: &'static str,
+    count: usize,
+    fixed: usize,
+    width: f64,
+    sleep_speed: f64,
+    elastic_speed: f64,
+    seed: u64,
+    setup_seconds: f64,
+    seconds_before: f64,
+    from: f64,
+    until: f64,
+    ended: String,
+    processor_seconds: f64,
+    /// Physical events.
+    events: u64,
+    nanoseconds_per_event: f64,
+    events_per_second: f64,
+    by_kind: Counts,
+    normal: usize,
+    falling: usize,
+    frozen: usize,
+    peak_bytes_per_particle: Option<f64>,
+    bytes_per_particle: Option<f64>,
+    /// Of the whole run only.
+    packing_fraction: Option<f64>,
+    mean_normal: Option<f64>,
+    deepest_overlap: f64,
+    trajectory_hash: Option<String>,
 }
 
 pub(super) fn measure(arguments: &DepositionArguments) -> Result<u8, ProgramError> {
@@ -241,5 +391,76 @@ fn since(now: &Counts, before: &Counts) -> Counts {
         transfer: now.transfer - before.transfer,
         elastic: now.elastic - before.elastic,
         guard: now.guard - before.guard,
+    }
+}
+
+impl std::fmt::Display for Outcome {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        let kinds = &self.by_kind;
+        writeln!(
+            f,
+            "deposition, {} grains on {:.2} d × {:.2} d with {} fixed ones, V_t = {}, V_c = {}",
+            self.count, self.width, self.width, self.fixed, self.sleep_speed, self.elastic_speed
+        )?;
+        writeln!(
+            f,
+            "  set-up           {:.2} s; then {:.2} s up to the window",
+            self.setup_seconds, self.seconds_before
+        )?;
+        writeln!(
+            f,
+            "  window           t = {:.3} … {:.3}, {}",
+            self.from, self.until, self.ended
+        )?;
+        writeln!(
+            f,
+            "  timed            {} events: {:.3} s of processor time",
+            self.events, self.processor_seconds
+        )?;
+        writeln!(
+            f,
+            "  an event         {:.1} ns, {:.0} a second",
+            self.nanoseconds_per_event, self.events_per_second
+        )?;
+        writeln!(
+            f,
+            "  by kind          {} pair + {} frozen + {} wake + {} sleep + {} wall + {} check wake",
+            kinds.pair, kinds.frozen, kinds.wake, kinds.sleep, kinds.wall, kinds.check_wake
+        )?;
+        writeln!(
+            f,
+            "  of these         {} elastic; guards acted {} times; lists made {:.4} an event",
+            kinds.elastic,
+            kinds.guard,
+            kinds.transfer as f64 / self.events as f64
+        )?;
+        writeln!(
+            f,
+            "  at the end       {} falling, {} normal, {} frozen",
+            self.falling, self.normal, self.frozen
+        )?;
+        writeln!(
+            f,
+            "  memory           {}",
+            bytes_of(self.peak_bytes_per_particle, self.bytes_per_particle)
+        )?;
+        if let Some(fraction) = self.packing_fraction {
+            writeln!(f, "  φ                {fraction:.4}")?;
+        }
+        if let Some(mean) = self.mean_normal {
+            writeln!(
+                f,
+                "  normal grains    {mean:.1} in the mean while the heap grows"
+            )?;
+        }
+        write!(
+            f,
+            "  deepest overlap  {:.1e} d since the start",
+            self.deepest_overlap
+        )?;
+        if let Some(hash) = &self.trajectory_hash {
+            write!(f, "\n  trajectory hash  {hash}")?;
+        }
+        Ok(())
     }
 }

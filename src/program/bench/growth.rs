@@ -4,10 +4,9 @@
 use crate::engine::{Limits, StopReason};
 use crate::error::SetupError;
 use crate::program::bench::arguments::GrowthArguments;
+use crate::program::bench::deposition::{Rain, sampled};
 use crate::program::bench::memory::Memory;
-use crate::program::bench::rain::Rain;
 use crate::program::bench::table::Table;
-use crate::program::bench::timing::sampled;
 use crate::program::error::ProgramError;
 use crate::program::progress::Progress;
 use crate::time::Time;

@@ -4,10 +4,8 @@ use serde::Serialize;
 
 use crate::engine::{Limits, Simulation, StopReason};
 use crate::model::{Model, Observer};
-use crate::program::error::ProgramError;
 use crate::program::processor::ProcessorClock;
 use crate::program::progress::Progress;
-use crate::time::Time;
 
 /// So many events are carried out between two looks at the clock on the wall.
 const PORTION: u64 = 100_000;
@@ -69,37 +67,4 @@ pub(super) fn timed<M: Model<D>, O: Observer<D>, const D: usize>(
         seconds: clock.seconds(),
     };
     (cost, reason)
-}
-
-/// Runs from sample to sample, a multiple of `step` in simulated time, until a
-/// limit is reached, and shows each; samples are not timed.
-pub(super) fn sampled<M: Model<D>, O: Observer<D>, const D: usize>(
-    simulation: &mut Simulation<M, D>,
-    step: f64,
-    limits: &Limits,
-    observer: &mut O,
-    mut show: impl FnMut(&Simulation<M, D>, Cost) -> Result<(), ProgramError>,
-) -> Result<(Cost, StopReason), ProgramError> {
-    let before = simulation.counts().total();
-    let mut cost = Cost::default();
-    show(simulation, cost)?;
-    let mut sample = (simulation.time().units() / step).floor() + 1.0;
-    loop {
-        let end = Time::from_units(sample * step).min(limits.time);
-        let clock = ProcessorClock::start();
-        let reason = simulation.run(
-            &Limits {
-                time: end,
-                ..*limits
-            },
-            observer,
-        );
-        cost.seconds += clock.seconds();
-        cost.events = simulation.counts().total() - before;
-        show(simulation, cost)?;
-        if reason != StopReason::Time || end >= limits.time {
-            return Ok((cost, reason));
-        }
-        sample += 1.0;
-    }
 }
