@@ -12,9 +12,17 @@ use grainfall::model::{Boundary, Parts, Period, Shape, Wall};
 use grainfall::policy::{Never, SlowDescent};
 use grainfall::predict::Polynomial;
 use grainfall::{Mode, Particle, ParticleId, SetupError, Time, Vector, along};
+use serde::{Deserialize, Serialize};
+#[cfg(feature = "program")]
+use {
+    grainfall::boundary::Cuboid,
+    grainfall::model::{Dynamics, Model, Predictor, StatePolicy},
+    grainfall::program::Refit,
+};
 
 /// The inside of a sphere about the origin; of a circle in the plane.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 struct Bowl {
     /// Its radius, in d.
     radius: f64,
@@ -64,6 +72,22 @@ impl<const D: usize, W: Wall<D>> Boundary<D> for Single<W> {
 
     fn walls(&self) -> &[W] {
         &self.0
+    }
+}
+
+/// For the whole program in a bowl, with the fields as parameters in scenarios.
+#[cfg(feature = "program")]
+impl Refit for Bowl {
+    fn refit<Y, P, S, const D: usize>(
+        &self,
+        parts: Parts<Y, P, Restitution, S, Cuboid<D>>,
+    ) -> impl Model<D>
+    where
+        Y: Dynamics<D>,
+        P: Predictor<D, Y::Flight>,
+        S: StatePolicy<D>,
+    {
+        parts.with_boundary(Single([*self]))
     }
 }
 

@@ -137,6 +137,19 @@ fn files_of_other_programs_are_read() {
 }
 
 #[test]
+fn modes_stand_in_the_column_type_or_mode() {
+    for (column, word, mode) in [
+        ("type:S:1", "frozen", Mode::Frozen),
+        ("mode:S:1", "fixed", Mode::Fixed),
+        ("type:I:1", "2", Mode::Normal),
+    ] {
+        let text = format!("1\nProperties=pos:R:3:{column}\n1 2 3 {word}\n");
+        let frame = &read_frames(text.as_bytes())[0];
+        assert_eq!(frame.grains[0].mode, mode, "{column}");
+    }
+}
+
+#[test]
 fn presets_are_the_papers() {
     let deposition = read_text(&Preset::named("deposition").unwrap().origin()).unwrap();
     let parameters = &deposition.parameters;

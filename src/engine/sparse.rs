@@ -78,7 +78,7 @@ impl<T: Clone> Sparse<T> {
 
     /// Adds a grain without an entry.
     pub(super) fn push(&mut self) {
-        if self.count % PAGE == 0 {
+        if self.count.is_multiple_of(PAGE) {
             self.pages.push(Page::at(COMMON, self.count));
         }
         self.count += 1;
@@ -89,7 +89,7 @@ impl<T: Clone> Sparse<T> {
         if let Some(last) = self.count.checked_sub(1) {
             self.clear(last);
             self.count = last;
-            if last % PAGE == 0 {
+            if last.is_multiple_of(PAGE) {
                 self.pages.pop();
             }
         }

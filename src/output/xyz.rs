@@ -12,7 +12,8 @@ use crate::time::Time;
 ///
 /// Two-dimensional frames are written with z = 0, so that every viewer can show
 /// them, and say `dimension=2`. Numbers have as many digits as it takes to read
-/// back the same bits.
+/// back the same bits. The column of the modes is called `type`, for that is what
+/// viewers tell grains apart by.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Frame {
     /// 2 or 3.
@@ -123,7 +124,7 @@ impl Frame {
             out,
             "Lattice=\"{a:?} 0.0 0.0 0.0 {b:?} 0.0 0.0 0.0 {c:?}\" Origin=\"{x:?} {y:?} {z:?}\" \
              pbc=\"{p} {q} {r}\" \
-             Properties=id:I:1:pos:R:3:velo:R:3:radius:R:1:mass:R:1:mode:S:1 \
+             Properties=id:I:1:pos:R:3:velo:R:3:radius:R:1:mass:R:1:type:S:1 \
              Time={} dimension={}",
             self.time, self.dimension
         )?;

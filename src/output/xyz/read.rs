@@ -16,8 +16,9 @@ const MOST_GRAINS: usize = 10_000_000;
 /// Reads the frames of an extended XYZ file, one by one.
 ///
 /// Only positions have to be there (`pos`, or a plain XYZ file); `velo`,
-/// `radius` or `diameter`, `mass`, `mode` and `id` are used if they are, other
-/// columns are passed over. Grains with an `id` are sorted by it.
+/// `radius` or `diameter`, `mass`, `id` and, for the modes, `type` (in words) or
+/// `mode` are used if they are, other columns are passed over. Grains with an `id`
+/// are sorted by it.
 #[derive(Debug)]
 pub struct XyzReader<R> {
     input: R,
@@ -34,7 +35,8 @@ enum Column {
     Radius,
     Diameter,
     Mass,
-    Mode,
+    /// By the name of the column.
+    Mode(&'static str),
     Other,
 }
 
@@ -231,7 +233,7 @@ impl<R: BufRead> XyzReader<R> {
         let words: Vec<&str> = text.split(':').collect();
         let mut columns = Vec::new();
         for triple in words.chunks(3) {
-            let [name, _kind, width] = triple else {
+            let [name, kind, width] = triple else {
                 return Err(wrong("name:kind:width, again and again, is wanted"));
             };
             let width: usize = match width.parse() {
@@ -249,7 +251,9 @@ impl<R: BufRead> XyzReader<R> {
                     ("radius", 1) => Column::Radius,
                     ("diameter", 1) => Column::Diameter,
                     ("mass" | "masses", 1) => Column::Mass,
-                    ("mode", 1) => Column::Mode,
+                    ("mode", 1) => Column::Mode("mode"),
+                    // Types that are numbers are no modes.
+                    ("type", 1) if *kind == "S" => Column::Mode("type"),
                     _ => Column::Other,
                 });
             }
@@ -307,13 +311,13 @@ impl<R: BufRead> XyzReader<R> {
                     }
                 }
                 Column::Mass => mass = Some(self.positive("mass", word)?),
-                Column::Mode => {
+                Column::Mode(name) => {
                     grain.mode = [Mode::Normal, Mode::Falling, Mode::Frozen, Mode::Fixed]
                         .into_iter()
                         .find(|mode| mode.name() == word)
                         .ok_or_else(|| {
                             let wanted = "normal, falling, frozen or fixed is wanted";
-                            self.wrong("mode", word.into(), wanted)
+                            self.wrong(name, word.into(), wanted)
                         })?;
                 }
             }

@@ -1,6 +1,10 @@
 //! Readers of scenarios and of grains against a great many inputs that are
 //! nearly right: no panic, no hang, and messages that help.
 
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
+use std::time::{Duration, Instant};
+
 use crate::mutate::{mutate_bytes, mutate_lines, mutate_tree};
 use grainfall::Time;
 use grainfall::engine::{Limits, Simulation, StopReason};
@@ -11,9 +15,6 @@ use grainfall::scenario::{
 };
 use rand::{RngExt, SeedableRng};
 use rand_chacha::ChaCha8Rng;
-use std::sync::Arc;
-use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
-use std::time::{Duration, Instant};
 
 /// Small scenarios that use what the presets don't.
 const MORE: [&str; 3] = [
@@ -292,7 +293,7 @@ fn scenarios(seed: u64, count: u64, runs: u64) {
 }
 
 const FRAMES: [&str; 4] = [
-    "2\nLattice=\"10.0 0.0 0.0 0.0 1.0 0.0 0.0 0.0 5.0\" Origin=\"0.0 0.0 0.0\" pbc=\"T F F\" Properties=id:I:1:pos:R:3:velo:R:3:radius:R:1:mass:R:1:mode:S:1 Time=2.5 dimension=3\n0 1.0 2.0 3.0 0.1 0.2 0.3 0.5 1.0 normal\n1 5.0 2.0 3.0 0.0 0.0 0.0 0.5 1.0 fixed\n",
+    "2\nLattice=\"10.0 0.0 0.0 0.0 1.0 0.0 0.0 0.0 5.0\" Origin=\"0.0 0.0 0.0\" pbc=\"T F F\" Properties=id:I:1:pos:R:3:velo:R:3:radius:R:1:mass:R:1:type:S:1 Time=2.5 dimension=3\n0 1.0 2.0 3.0 0.1 0.2 0.3 0.5 1.0 normal\n1 5.0 2.0 3.0 0.0 0.0 0.0 0.5 1.0 fixed\n",
     "3\ncomment\nAr 0 0 0\nAr 2 0 0\nAr 0 2 0.5\n",
     "1\nProperties=species:S:1:pos:R:3:diameter:R:1 Time=1e3\nHe 1 2 3 0.8\n1\nProperties=pos:R:3\n1 2 3\n",
     "2\nProperties=id:I:1:pos:R:3 dimension=2\n1 0.5 0.25 0\n0 2 2 0\n",

@@ -1,6 +1,16 @@
 //! Sweeps: they do not depend on threads, and go on after any end.
 
-use super::*;
+use std::collections::BTreeMap;
+use std::fs;
+use std::path::Path;
+use std::time::Instant;
+
+use crate::{
+    TIMINGS, assert_same, command, content, expect, forget_count, kill, place, start, wait_for,
+};
+use grainfall::setup::seeded;
+use rand::RngExt;
+use serde_json::Value;
 
 /// Two values each of two things; eight runs of a quarter of a second.
 const SWEEP: [&str; 9] = [
