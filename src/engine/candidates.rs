@@ -2,6 +2,8 @@
 //!
 //! Bounds decide who is asked, never what is answered.
 
+use wide::f64x4;
+
 use crate::engine::body::{LONG_AGO, World, flight_of, is_known, scale_at};
 use crate::engine::cells::Link;
 use crate::engine::glances::Onlooker;
@@ -196,29 +198,6 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
         let horizon = until - now;
         let place = own.start() - near.anchor(particle);
         let (bed, movers) = near.bed(particle);
-        let slots = &self.slots;
-        let mut add = |answers: [f64; LANES], few: &[Link<D>], at_rest: bool| {
-            for (mut bound, link) in answers.into_iter().zip(few) {
-                if let Some((left, time)) = back
-                    && left == *link
-                {
-                    bound = time;
-                }
-                // NaN says nothing, so it is not later than anything.
-                if bound == f64::INFINITY || bound > horizon {
-                    continue;
-                }
-                // Later than its own bound, the other finds it anyway; those at rest
-                // have none.
-                if !at_rest && bound > slots[link.particle()].bound() - now {
-                    continue;
-                }
-                candidates.push(Candidate {
-                    bound: if bound > 0.0 { bound } else { 0.0 },
-                    link: *link,
-                });
-            }
-        };
         let still = bed.map_or(&[][..], |bed| &bed.still);
         let resting = bed.map_or(&[][..], |bed| &bed.resting);
         for (resting, few) in resting.iter().zip(still.chunks(LANES)) {
@@ -231,7 +210,13 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
                 blur,
                 horizon,
             };
-            add(model.predictor().not_before_resting(&nook), few, true);
+            let mut times = model.predictor().not_before_resting(&nook);
+            if let Some((left, time)) = back
+                && let Some(lane) = few.iter().position(|link| *link == left)
+            {
+                times[lane] = time;
+            }
+            note(candidates, &times, few, horizon);
         }
         if self.world.onlooker(particle, now).is_some() {
             return true;
@@ -252,17 +237,44 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
                 horizon,
             };
             let flight = |lane: usize| flight_of(model, found[lane].particle, theirs[lane]);
-            let mut answers = model.predictor().not_before(&own, flight, &crowd);
+            let mut times = model.predictor().not_before(&own, flight, &crowd);
             if after.iter().any(|after| !(0.0..=LONG_AGO).contains(after)) {
-                for (lane, answer) in answers.iter_mut().enumerate() {
+                for (lane, time) in times.iter_mut().enumerate() {
                     let id = found[lane].particle;
                     if !is_known(model, id, theirs[lane], after[lane], blur) {
-                        *answer = 0.0;
+                        *time = 0.0;
                     }
                 }
             }
-            add(answers, few, false);
+            for (lane, other) in found.iter().enumerate() {
+                // Later than its own bound, the other finds it anyway.
+                if times[lane] > self.slots[other.particle].bound() - now {
+                    times[lane] = f64::INFINITY;
+                }
+            }
+            note(candidates, &times, few, horizon);
         }
         true
+    }
+}
+
+/// Notes those of a few who may come up to a time.
+#[inline(always)]
+fn note<const D: usize>(
+    candidates: &mut Vec<Candidate<D>>,
+    times: &[f64; LANES],
+    few: &[Link<D>],
+    until: f64,
+) {
+    // What is no number is not later than anything; what never comes is.
+    let late = f64x4::new(*times).simd_gt(f64x4::splat(until.min(f64::MAX)));
+    let mut soon = !late.to_bitmask() & ((1 << few.len()) - 1);
+    while soon != 0 {
+        let lane = soon.trailing_zeros() as usize;
+        soon &= soon - 1;
+        candidates.push(Candidate {
+            bound: times[lane].max(0.0),
+            link: few[lane],
+        });
     }
 }
