@@ -120,8 +120,9 @@ impl Time {
     }
 
     /// How many multiples of `step` √(d/g), which is above 0, have been reached since
-    /// the start of the clock: the n-th one from the instant `from_units(n * step)` on,
-    /// for which the quotient of the two alone may be too small.
+    /// the start of the clock: the n-th one from the instant `from_units(n * step)` on, for
+    /// which the quotient of the two alone may be too small, or from one that is earlier by
+    /// no more than the rounding of that quotient.
     #[must_use]
     pub fn multiples_reached(self, step: f64) -> f64 {
         let passed = libm::floor(self.units() / step);

@@ -142,6 +142,11 @@ fn modes_stand_in_the_column_type_or_mode() {
         ("type:S:1", "frozen", Mode::Frozen),
         ("mode:S:1", "fixed", Mode::Fixed),
         ("type:I:1", "2", Mode::Normal),
+        // Types of somebody else's.
+        ("type:S:1", "1", Mode::Normal),
+        ("mode:S:1:type:S:1", "frozen sand", Mode::Frozen),
+        ("type:S:1:mode:S:1", "fixed falling", Mode::Falling),
+        ("mode:S:1:type:S:1", "falling fixed", Mode::Falling),
     ] {
         let text = format!("1\nProperties=pos:R:3:{column}\n1 2 3 {word}\n");
         let frame = &read_frames(text.as_bytes())[0];

@@ -129,12 +129,12 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
         self.candidates = near;
     }
 
-    /// Whether so much has happened in an epoch that looking at everybody anew is
-    /// a small matter beside it.
+    /// Whether so much has happened in an epoch that looking anew at all who move is a
+    /// small matter beside it.
     #[cold]
     fn epoch_is_over(&self) -> bool {
         let events = self.counts.total() - self.epoch_events;
-        events >= self.world.bodies.len() as u64 / 8
+        events >= self.world.modes.normal as u64 / 8
     }
 
     /// Everybody on a grain's list who may meet it before its known contact, and

@@ -6,7 +6,8 @@
 //! bound needs: no flights have to be brought to one instant first.
 //!
 //! A glance follows from the grain's state, the epoch and the place it is filed
-//! under: a simulation that is restored has the same.
+//! under, if it has a list: a simulation that is restored has the same. Who has none is
+//! at rest or aloft, and looked at in other ways.
 
 use std::hint::black_box;
 
@@ -53,7 +54,7 @@ impl<const D: usize> Glance<D> {
     }
 }
 
-/// All grains at one instant.
+/// Grains at one instant.
 #[derive(Clone, Debug)]
 pub(super) struct Glances<const D: usize> {
     /// Of those that have a list and are known well enough.
@@ -144,7 +145,7 @@ impl<const D: usize> World<D> {
         }
     }
 
-    /// Begins a new epoch: everybody as they would be now.
+    /// Begins a new epoch: all who have a list as they would be now.
     pub(super) fn begin_epoch<M: Model<D>>(&mut self, model: &M, epoch: Time) {
         let still = Motion {
             id: ParticleId(0),

@@ -167,7 +167,7 @@ impl<const D: usize> Neighbours<D> {
         &self.ties[particle].list
     }
 
-    /// An link of a grain's list, in terms of where grains are stored.
+    /// A link of a grain's list, in terms of where grains are stored.
     #[inline]
     pub(super) fn found(&self, particle: u32, link: Link<D>) -> Found<D> {
         self.cells.found(particle, link)

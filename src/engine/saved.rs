@@ -238,7 +238,7 @@ impl<R, E, S, const D: usize> Saved<R, E, S, D> {
             return Err(wrong(reason));
         }
         if !self.slots.entries().all(|slot| is_there(slot.partner)) {
-            return Err(wrong("a grain is to meet nobody"));
+            return Err(wrong("a grain is to meet somebody who is not there"));
         }
         for id in 0..count {
             if let Some(reason) = self.misfit(id, model) {

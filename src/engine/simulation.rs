@@ -170,7 +170,7 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
         }
     }
 
-    /// Everybody is seen from now on as they are now.
+    /// All who have a list are seen from now on as they are now.
     pub(super) fn begin_epoch(&mut self) {
         self.epoch_events = self.counts.total();
         self.world.begin_epoch(&self.model, self.world.clock);

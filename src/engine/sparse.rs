@@ -12,7 +12,7 @@ use serde::{Deserialize, Serialize};
 
 /// Grains of a page, as many as a set of its members has bits.
 const PAGE: u32 = u32::BITS;
-/// Where the entries of all pages are that have none of their own.
+/// Where pages without entries of their own find them.
 const COMMON: u32 = 0;
 
 /// A few grains of consecutive ids.
@@ -168,7 +168,12 @@ impl<T: Clone> Sparse<T> {
 
     /// Takes all entries away.
     pub(super) fn clear_all(&mut self) {
-        *self = Sparse::new(self.len(), self.common().clone());
+        for page in 0..self.pages.len() as u32 {
+            if self.pages[page as usize].members != 0 {
+                let first = page * PAGE;
+                (first..first + PAGE).for_each(|particle| self.clear(particle));
+            }
+        }
     }
 
     /// Who has an entry of their own, in order, and what.
@@ -201,7 +206,7 @@ impl<T: Clone> Sparse<T> {
         let mut restored = Sparse::new(count, common);
         for (particle, entry) in saved.entries {
             if particle as usize >= count || restored.has(particle) {
-                return Err("something is there for some grains only");
+                return Err("a table names a grain that is not there, or one twice");
             }
             *restored.make(particle) = entry;
         }
@@ -216,6 +221,7 @@ impl<T> Index<u32> for Sparse<T> {
 
     #[inline]
     fn index(&self, particle: u32) -> &T {
+        debug_assert!(particle < self.count, "there is no grain {particle}");
         let page = self.pages[(particle / PAGE) as usize];
         &self.entries[page.place(particle)]
     }

@@ -122,7 +122,7 @@ pub enum Response<const D: usize> {
     Sleep(Reason),
 }
 
-/// What asks for itself again and again waits at least so long each time, in √(d/g):
+/// An event that asks for another of its kind waits at least so long for it, in √(d/g):
 /// so time goes on, whatever rounding does. The engine and the built-in policies
 /// keep to it.
 pub const SHORTEST_WAIT: f64 = 1.0e-9;

@@ -30,7 +30,7 @@ pub(super) fn not_negative(field: &'static str, value: f64) -> Result<(), SetupE
     require(value >= 0.0, field, value, "0 or more is allowed")
 }
 
-/// Refuses what is no share of a whole.
+/// Refuses what is no part of a whole, 0 … 1.
 pub(super) fn fraction(field: &'static str, value: f64) -> Result<(), SetupError> {
     let holds = (0.0..=1.0).contains(&value);
     require(holds, field, value, "0 … 1 is allowed")

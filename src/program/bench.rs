@@ -13,10 +13,6 @@ pub(super) use arguments::BenchArguments;
 use crate::program::bench::arguments::Subject;
 use crate::program::error::ProgramError;
 
-/// More grains than this are numbered along a curve, so that neighbours lie together
-/// in memory.
-pub(super) const MANY: usize = 20_000;
-
 pub(super) fn bench(arguments: &BenchArguments) -> Result<u8, ProgramError> {
     match &arguments.subject {
         Subject::Gas(arguments) => gas::measure(arguments),

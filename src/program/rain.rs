@@ -3,14 +3,17 @@
 use crate::engine::{Limits, Simulation, StopReason};
 use crate::error::SetupError;
 use crate::policy::Criterion;
-use crate::program::bench::MANY;
 use crate::program::error::ProgramError;
 use crate::program::processor::ProcessorClock;
 use crate::program::timing::Cost;
 use crate::scenario::{Assignment, GravityModel, Preset, ScenarioError, Start, read_text};
 use crate::time::Time;
 
-/// The paper's grains above its base: so high is the rain.
+/// More grains than this are numbered along a curve, so that neighbours lie together
+/// in memory.
+pub(super) const MANY: usize = 20_000;
+
+/// Grains of the paper's rain.
 const PAPER_COUNT: f64 = 4800.0;
 /// The edge of the paper's base, in d.
 pub(super) const PAPER_WIDTH: f64 = 10.0;

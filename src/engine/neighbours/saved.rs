@@ -66,10 +66,10 @@ impl<const D: usize> Neighbours<D> {
         }
         let mut ties = Sparse::new(count, Tie::LOOSE);
         for (particle, tie) in (0..).zip(&saved.ties) {
-            if !(tie.leash >= 0.0 && tie.leash.is_finite())
+            if !(0.0..=saved.longest).contains(&tie.leash)
                 || tie.home.iter().any(|x| !x.is_finite())
             {
-                return Err("a leash has no length");
+                return Err("a leash has a length that none has");
             }
             let mut list = Vec::with_capacity(tie.list.len());
             for &(other, image) in &tie.list {

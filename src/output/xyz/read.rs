@@ -35,8 +35,9 @@ enum Column {
     Radius,
     Diameter,
     Mass,
-    /// By the name of the column.
-    Mode(&'static str),
+    Mode,
+    /// A mode, if it names one.
+    Type,
     Other,
 }
 
@@ -233,7 +234,7 @@ impl<R: BufRead> XyzReader<R> {
         let words: Vec<&str> = text.split(':').collect();
         let mut columns = Vec::new();
         for triple in words.chunks(3) {
-            let [name, kind, width] = triple else {
+            let [name, _, width] = triple else {
                 return Err(wrong("name:kind:width, again and again, is wanted"));
             };
             let width: usize = match width.parse() {
@@ -251,9 +252,8 @@ impl<R: BufRead> XyzReader<R> {
                     ("radius", 1) => Column::Radius,
                     ("diameter", 1) => Column::Diameter,
                     ("mass" | "masses", 1) => Column::Mass,
-                    ("mode", 1) => Column::Mode("mode"),
-                    // Types that are numbers are no modes.
-                    ("type", 1) if *kind == "S" => Column::Mode("type"),
+                    ("mode", 1) => Column::Mode,
+                    ("type", 1) => Column::Type,
                     _ => Column::Other,
                 });
             }
@@ -281,7 +281,7 @@ impl<R: BufRead> XyzReader<R> {
     fn read_grain(&self, id: u64, header: &Header) -> Result<(u64, Particle<3>), XyzError> {
         let mut id = id;
         let mut grain = Particle::new(Vector::zeros(), Vector::zeros());
-        let mut mass = None;
+        let (mut mass, mut mode) = (None, None);
         let mut words = self.buffer.split_whitespace();
         for column in &header.columns {
             let word = words.next().unwrap_or("");
@@ -311,21 +311,20 @@ impl<R: BufRead> XyzReader<R> {
                     }
                 }
                 Column::Mass => mass = Some(self.positive("mass", word)?),
-                Column::Mode(name) => {
-                    grain.mode = [Mode::Normal, Mode::Falling, Mode::Frozen, Mode::Fixed]
-                        .into_iter()
-                        .find(|mode| mode.name() == word)
-                        .ok_or_else(|| {
-                            let wanted = "normal, falling, frozen or fixed is wanted";
-                            self.wrong(name, word.into(), wanted)
-                        })?;
+                Column::Mode => {
+                    let wanted = "normal, falling, frozen or fixed is wanted";
+                    let said = mode_named(word);
+                    mode = Some(said.ok_or_else(|| self.wrong("mode", word.into(), wanted))?);
                 }
+                // Others have types of their own there, which say nothing of modes.
+                Column::Type => mode = mode.or(mode_named(word)),
             }
         }
         if header.dimension == 2 && (grain.position[2] != 0.0 || grain.velocity[2] != 0.0) {
             let found = format!("{} {}", grain.position[2], grain.velocity[2]);
             return Err(self.wrong("z of a plane frame", found, "0 0 is wanted"));
         }
+        grain.mode = mode.unwrap_or(grain.mode);
         grain.mass = mass
             .unwrap_or_else(|| (0..header.dimension).fold(1.0, |mass, _| mass * grain.diameter));
         Ok((id, grain))
@@ -338,6 +337,13 @@ impl<R: BufRead> Iterator for XyzReader<R> {
     fn next(&mut self) -> Option<Self::Item> {
         self.read_frame().transpose()
     }
+}
+
+/// The mode of this name, if there is one.
+fn mode_named(word: &str) -> Option<Mode> {
+    [Mode::Normal, Mode::Falling, Mode::Frozen, Mode::Fixed]
+        .into_iter()
+        .find(|mode| mode.name() == word)
 }
 
 /// The `key=value` and `key="some values"` of a comment line.
