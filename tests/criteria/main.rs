@@ -1,5 +1,6 @@
 //! The gallery of sleep criteria: what each does, in scenes with known answers,
 //! and that none of it depends on how it is packed or interrupted.
+#![cfg(feature = "program")]
 
 #[path = "../common/mod.rs"]
 mod common;

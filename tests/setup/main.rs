@@ -3,6 +3,7 @@
 mod base;
 mod crystal;
 mod gas;
+#[cfg(feature = "program")]
 mod numbering;
 mod rain;
 
