@@ -21,11 +21,7 @@ fn bad_files_of_grains_are_refused() {
         ),
         (
             "1\nProperties=pos:R:3:mode:S:1\n0 0 0 awake\n",
-            "mode is `awake`",
-        ),
-        (
-            "1\nProperties=pos:R:3:type:S:1\n0 0 0 Si\n",
-            "type is `Si`; normal, falling, frozen or fixed is wanted",
+            "mode is `awake`; normal, falling, frozen or fixed is wanted",
         ),
         ("1\nProperties=pos:R\n0 0 0\n", "name:kind:width"),
         (
