@@ -100,3 +100,20 @@ pub enum SetupError {
         reason: &'static str,
     },
 }
+
+/// Refuses the value of a parameter, unless something holds of it.
+pub(crate) fn require(
+    holds: bool,
+    field: &'static str,
+    value: f64,
+    allowed: &'static str,
+) -> Result<(), SetupError> {
+    if holds {
+        return Ok(());
+    }
+    Err(SetupError::Parameter {
+        field,
+        value,
+        allowed,
+    })
+}

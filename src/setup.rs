@@ -47,25 +47,7 @@ pub use rand_chacha::ChaCha8Rng;
 pub use random::seeded;
 pub use sizes::Sizes;
 
-use crate::error::SetupError;
-
-/// `Ok` if `holds`, else the error that names the parameter.
-fn require(
-    holds: bool,
-    field: &'static str,
-    value: f64,
-    allowed: &'static str,
-) -> Result<(), SetupError> {
-    if holds {
-        Ok(())
-    } else {
-        Err(SetupError::Parameter {
-            field,
-            value,
-            allowed,
-        })
-    }
-}
+use crate::error::require;
 
 /// Mass of a grain of this diameter in `D` dimensions, in m: σ^D.
 fn mass_of<const D: usize>(diameter: f64) -> f64 {

@@ -1,5 +1,5 @@
 use crate::boundary::Plane;
-use crate::error::SetupError;
+use crate::error::{SetupError, require};
 use crate::model::{Boundary, Period};
 use crate::particle::Vector;
 
@@ -71,14 +71,14 @@ impl<const D: usize> Cuboid<D> {
             match side {
                 Side::Open => {}
                 Side::Periodic { origin, length } => {
-                    check(
+                    require(
                         origin.is_finite(),
                         "origin",
                         origin,
                         "a finite number is allowed",
                     )?;
                     let positive = length.is_finite() && length > 0.0;
-                    check(positive, "length", length, "a positive number is allowed")?;
+                    require(positive, "length", length, "a positive number is allowed")?;
                     periods[axis] = Some(Period { origin, length });
                 }
                 Side::Walls {
@@ -87,10 +87,10 @@ impl<const D: usize> Cuboid<D> {
                     restitution,
                 } => {
                     let in_range = (0.0..=1.0).contains(&restitution);
-                    check(in_range, "restitution", restitution, "0 … 1 is allowed")?;
+                    require(in_range, "restitution", restitution, "0 … 1 is allowed")?;
                     for (place, up) in [(low, 1.0), (high, -1.0)] {
                         let Some(place) = place else { continue };
-                        check(
+                        require(
                             place.is_finite(),
                             "wall",
                             place,
@@ -105,7 +105,7 @@ impl<const D: usize> Cuboid<D> {
                         });
                     }
                     if let (Some(low), Some(high)) = (low, high) {
-                        check(
+                        require(
                             low < high,
                             "high",
                             high,
@@ -125,23 +125,6 @@ impl<const D: usize> Cuboid<D> {
             periods: [None; D],
             walls: Vec::new(),
         }
-    }
-}
-
-fn check(
-    holds: bool,
-    field: &'static str,
-    value: f64,
-    allowed: &'static str,
-) -> Result<(), SetupError> {
-    if holds {
-        Ok(())
-    } else {
-        Err(SetupError::Parameter {
-            field,
-            value,
-            allowed,
-        })
     }
 }
 

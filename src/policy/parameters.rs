@@ -1,23 +1,6 @@
 //! What parameters of criteria may be.
 
-use crate::error::SetupError;
-
-/// Refuses a value unless something holds of it.
-fn require(
-    holds: bool,
-    field: &'static str,
-    value: f64,
-    allowed: &'static str,
-) -> Result<(), SetupError> {
-    if holds {
-        return Ok(());
-    }
-    Err(SetupError::Parameter {
-        field,
-        value,
-        allowed,
-    })
-}
+use crate::error::{SetupError, require};
 
 /// Refuses what is not a finite number greater than 0.
 pub(super) fn positive(field: &'static str, value: f64) -> Result<(), SetupError> {
