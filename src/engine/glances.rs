@@ -156,7 +156,6 @@ impl<const D: usize> World<D> {
         let flight = model.dynamics().flight(&still, epoch);
         self.glances.frame = model.predictor().frame(&flight);
         self.glances.epoch = epoch;
-        self.glances.all.clear_all();
         let tied: Vec<u32> = self.near.tied().collect();
         for particle in tied {
             self.glance(model, particle);

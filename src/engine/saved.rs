@@ -24,7 +24,7 @@ use crate::engine::settings::{Collapse, Settings};
 use crate::engine::setup::check_parts;
 use crate::engine::simulation::{Simulation, listed_scale};
 use crate::engine::slot::{Partner, Slot};
-use crate::engine::sparse::{SavedTable, Sparse};
+use crate::engine::sparse::Sparse;
 use crate::engine::speeds::Speeds;
 use crate::engine::transitions::{Alarm, Call};
 use crate::error::SetupError;
@@ -49,7 +49,8 @@ pub struct Saved<R, E, S, const D: usize> {
     masses: Vec<f64>,
     memories: Vec<R>,
     spins: Vec<S>,
-    slots: SavedTable<Slot>,
+    /// Of those who have something ahead of them, in order.
+    slots: Vec<(u32, Slot)>,
     /// In the order in which they are due.
     alarms: Vec<Alarm<E>>,
     alarm_count: u64,
@@ -237,7 +238,7 @@ impl<R, E, S, const D: usize> Saved<R, E, S, D> {
         if let Some(reason) = self.traces.misfit(guards, count, is_there) {
             return Err(wrong(reason));
         }
-        if !self.slots.entries().all(|slot| is_there(slot.partner)) {
+        if !self.slots.iter().all(|(_, slot)| is_there(slot.partner)) {
             return Err(wrong("a grain is to meet somebody who is not there"));
         }
         for id in 0..count {

@@ -8,8 +8,6 @@
 
 use std::ops::Index;
 
-use serde::{Deserialize, Serialize};
-
 /// Grains of a page, as many as a set of its members has bits.
 const PAGE: u32 = u32::BITS;
 /// Where pages without entries of their own find them.
@@ -166,16 +164,6 @@ impl<T: Clone> Sparse<T> {
         self.pages[(particle / PAGE) as usize] = page;
     }
 
-    /// Takes all entries away.
-    pub(super) fn clear_all(&mut self) {
-        for page in 0..self.pages.len() as u32 {
-            if self.pages[page as usize].members != 0 {
-                let first = page * PAGE;
-                (first..first + PAGE).for_each(|particle| self.clear(particle));
-            }
-        }
-    }
-
     /// Who has an entry of their own, in order, and what.
     pub(super) fn each(&self) -> impl Iterator<Item = (u32, &T)> {
         let pages = (0..).step_by(PAGE as usize).zip(&self.pages);
@@ -185,34 +173,29 @@ impl<T: Clone> Sparse<T> {
             .map(|particle| (particle, &self[particle]))
     }
 
-    /// As it is saved.
-    pub(super) fn save(&self) -> SavedTable<T> {
-        SavedTable {
-            count: self.len(),
-            entries: self.each().map(|(id, entry)| (id, entry.clone())).collect(),
-        }
+    /// As it is saved: who has an entry of their own, in order, and what.
+    pub(super) fn save(&self) -> Vec<(u32, T)> {
+        self.each().map(|(id, entry)| (id, entry.clone())).collect()
     }
 
     /// As it was saved, for so many grains.
     ///
     /// # Errors
     ///
-    /// If it is for another number of grains, or names one twice.
+    /// If it names somebody who is not there, or one twice.
     pub(super) fn restore(
-        saved: SavedTable<T>,
+        saved: Vec<(u32, T)>,
         count: usize,
         common: T,
     ) -> Result<Self, &'static str> {
         let mut restored = Sparse::new(count, common);
-        for (particle, entry) in saved.entries {
+        for (particle, entry) in saved {
             if particle as usize >= count || restored.has(particle) {
                 return Err("a table names a grain that is not there, or one twice");
             }
             *restored.make(particle) = entry;
         }
-        (saved.count == count)
-            .then_some(restored)
-            .ok_or("something is there for some grains only")
+        Ok(restored)
     }
 }
 
@@ -224,20 +207,6 @@ impl<T> Index<u32> for Sparse<T> {
         debug_assert!(particle < self.count, "there is no grain {particle}");
         let page = self.pages[(particle / PAGE) as usize];
         &self.entries[page.place(particle)]
-    }
-}
-
-/// A [`Sparse`] table as it is saved: who has an entry, in order, and what.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub(super) struct SavedTable<T> {
-    count: usize,
-    entries: Vec<(u32, T)>,
-}
-
-impl<T> SavedTable<T> {
-    /// What is saved.
-    pub(super) fn entries(&self) -> impl Iterator<Item = &T> {
-        self.entries.iter().map(|(_, entry)| entry)
     }
 }
 
@@ -299,13 +268,9 @@ mod tests {
 
     #[test]
     fn a_table_that_does_not_fit_is_refused() {
-        let of = |count, ids: &[u32]| SavedTable {
-            count,
-            entries: ids.iter().map(|id| (*id, 1.0)).collect(),
-        };
-        assert!(Sparse::restore(of(3, &[0, 2]), 3, 0.0).is_ok());
-        for (count, ids) in [(4, &[0][..]), (3, &[3][..]), (3, &[1, 1][..])] {
-            assert!(Sparse::restore(of(count, ids), 3, 0.0).is_err());
+        for (ids, fits) in [(&[0, 2][..], true), (&[3], false), (&[1, 1], false)] {
+            let saved = ids.iter().map(|id| (*id, 1.0)).collect();
+            assert_eq!(Sparse::restore(saved, 3, 0.0).is_ok(), fits);
         }
     }
 }
