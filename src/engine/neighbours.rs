@@ -250,12 +250,14 @@ impl<const D: usize> Neighbours<D> {
     }
 
     /// Ties a moving grain to an anchor a little ahead of it and makes its list
-    /// anew. `radius` is its largest as long as this grid serves, in d.
+    /// anew. It meets somebody in `wait`, in √(d/g); `radius` is its largest as long as
+    /// this grid serves, in d.
     pub(super) fn tie(
         &mut self,
         particle: u32,
         position: &Vector<D>,
         velocity: &Vector<D>,
+        wait: f64,
         radius: f64,
     ) {
         if !self.ties.has(particle) {
@@ -269,9 +271,10 @@ impl<const D: usize> Neighbours<D> {
             let tie = self.ties.make(particle);
             tie.leash = if tie.lonely { self.longest } else { short };
             let leash = tie.leash;
-            // Half a unit of time ahead, but well within the leash.
+            // Where it meets somebody, but no more than half a unit of time ahead and
+            // well within the leash.
             let ahead = if speed > 0.0 {
-                f64::min(0.5, 0.75 * leash / speed)
+                f64::min(wait.min(0.5), 0.75 * leash / speed)
             } else {
                 0.0
             };

@@ -215,6 +215,7 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
             particle,
             &flight.position(after),
             &flight.velocity(after),
+            self.slots[particle].bound() - *clock,
             scale * body.radius,
         );
         if loose || near.turns(particle) != image {
