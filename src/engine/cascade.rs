@@ -202,7 +202,7 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
                 let position = self.world.particle_now(&self.model, member).position;
                 self.settle(member, position, velocity);
             }
-            self.traces[member as usize].partner = Partner::Nobody;
+            self.traces.forget_partner(member);
             if let Some(slot) = self.slots.own(member) {
                 slot.sleep = crate::time::Time::NEVER;
             }
@@ -224,12 +224,13 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
     fn is_caught(&mut self, particle: u32) -> bool {
         let now = self.world.clock;
         let exit = self.settings.guards.exit_speed;
-        let trace = &mut self.traces[particle as usize];
-        if trace.confined == 0 || !trace.confined.is_multiple_of(CONFINED) || exit == 0.0 {
+        let confined = self.traces[particle].confined;
+        if confined == 0 || !confined.is_multiple_of(CONFINED) || exit == 0.0 {
             return false;
         }
-        let lasted = now - trace.confined_since;
-        trace.confined_since = now;
+        let Some(lasted) = self.traces.confine_from(particle, now) else {
+            return false;
+        };
         let velocity = self.world.particle_now(&self.model, particle).velocity;
         let mut bars = Vec::new();
         self.for_each_static(particle, CAGE, |touch, _| bars.push(touch));
@@ -266,7 +267,7 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
             return None;
         }
         let tried = exit_speed > 0.0 && cascade.is_some_and(|due| run / STUBBORN >= due);
-        let confined = self.traces[particle as usize].confined >= run;
+        let confined = self.traces[particle].confined >= run;
         if !tried || !confined || self.collapse.is_some() {
             return None;
         }
@@ -284,7 +285,7 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
             .chain(&cluster.statics)
             .map(|id| ParticleId(*id))
             .collect();
-        if let Partner::Particle(last) = self.traces[particle as usize].partner
+        if let Partner::Particle(last) = self.traces[particle].partner
             && !particles.contains(&ParticleId(last))
         {
             particles.push(ParticleId(last));

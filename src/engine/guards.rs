@@ -3,12 +3,13 @@
 
 use std::hint::black_box;
 
-use std::ops::{Index, IndexMut};
+use std::ops::Index;
 
 use serde::{Deserialize, Serialize};
 
 use crate::engine::settings::Guards;
 use crate::engine::slot::Partner;
+use crate::engine::sparse::Sparse;
 use crate::time::Time;
 
 /// Collisions closer together than this, in √(d/g), are at one instant.
@@ -41,10 +42,21 @@ pub(super) struct Trace {
     pub(super) run: u32,
     /// When it last collided.
     pub(super) last: Time,
-    /// Collisions with static grains and walls since it last met a mobile one.
+    /// Collisions with static grains and walls since it last met a mobile one, or slept.
     pub(super) confined: u32,
     /// When the last lot of them began.
     pub(super) confined_since: Time,
+}
+
+impl Trace {
+    /// Of a grain that has not collided for long.
+    const NONE: Trace = Trace {
+        partner: Partner::Nobody,
+        run: 0,
+        last: Time::NEVER,
+        confined: 0,
+        confined_since: Time::NEVER,
+    };
 }
 
 /// Static partners that a grain may not meet again before a time.
@@ -62,9 +74,10 @@ impl Holds {
 }
 
 /// The traces of all grains.
-#[derive(Clone, Debug, Serialize, Deserialize)]
+#[derive(Clone, Debug)]
 pub(super) struct Traces {
-    traces: Vec<Trace>,
+    /// Of those that have collided, and have not slept for long.
+    traces: Sparse<Trace>,
     /// Empty if the hold is off.
     holds: Vec<Holds>,
     hold: f64,
@@ -72,45 +85,16 @@ pub(super) struct Traces {
     moment: f64,
 }
 
-impl Traces {
-    pub(super) fn new(guards: &Guards) -> Self {
-        Traces {
-            traces: Vec::new(),
-            holds: Vec::new(),
-            hold: guards.hold,
-            // The detector of collapse needs it if there is no projection, too.
-            moment: if guards.exit_speed > 0.0 {
-                HURRY * guards.exit_speed
-            } else {
-                MOMENT
-            },
-        }
-    }
+/// Traces as they are saved.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub(super) struct SavedTraces {
+    traces: Vec<(u32, Trace)>,
+    holds: Vec<Holds>,
+    hold: f64,
+    moment: f64,
+}
 
-    pub(super) fn add(&mut self) {
-        self.traces.push(Trace {
-            partner: Partner::Nobody,
-            run: 0,
-            last: Time::NEVER,
-            confined: 0,
-            confined_since: Time::NEVER,
-        });
-        if self.hold > 0.0 {
-            self.holds.push(Holds::NONE);
-        }
-    }
-
-    /// Reads a grain's trace, to have it at hand.
-    #[inline]
-    pub(super) fn touch(&self, particle: u32) {
-        black_box(self.traces[particle as usize].run);
-    }
-
-    pub(super) fn forget_last(&mut self) {
-        self.traces.pop();
-        self.holds.pop();
-    }
-
+impl SavedTraces {
     /// What does not fit, in traces that have been read, if anything.
     pub(super) fn misfit(
         &self,
@@ -123,14 +107,113 @@ impl Traces {
             return Some("they follow other guards");
         }
         let held = if self.hold > 0.0 { count } else { 0 };
-        if self.traces.len() != count || self.holds.len() != held {
+        if self.holds.len() != held {
             return Some("their number is not that of the grains");
         }
         if self.holds.iter().any(|holds| holds.next >= HELD) {
             return Some("a hold is out of place");
         }
-        let met = |trace: &Trace| is_there(trace.partner);
+        let met = |(_, trace): &(u32, Trace)| is_there(trace.partner);
         (!self.traces.iter().all(met)).then_some("a collision with nobody")
+    }
+}
+
+impl Traces {
+    pub(super) fn new(guards: &Guards) -> Self {
+        Traces {
+            traces: Sparse::new(0, Trace::NONE),
+            holds: Vec::new(),
+            hold: guards.hold,
+            // The detector of collapse needs it if there is no projection, too.
+            moment: if guards.exit_speed > 0.0 {
+                HURRY * guards.exit_speed
+            } else {
+                MOMENT
+            },
+        }
+    }
+
+    pub(super) fn add(&mut self) {
+        self.traces.push();
+        if self.hold > 0.0 {
+            self.holds.push(Holds::NONE);
+        }
+    }
+
+    /// Reads a grain's trace, to have it at hand.
+    #[inline]
+    pub(super) fn touch(&self, particle: u32) {
+        black_box(self.traces[particle].run);
+    }
+
+    pub(super) fn forget_last(&mut self) {
+        self.traces.pop();
+        self.holds.pop();
+    }
+
+    /// A grain whose last event was no collision, or has been undone.
+    pub(super) fn forget_partner(&mut self, particle: u32) {
+        if let Some(trace) = self.traces.own(particle) {
+            trace.partner = Partner::Nobody;
+        }
+    }
+
+    /// A grain falls asleep. What it has done at this instant is not forgotten: it may
+    /// be woken at once.
+    pub(super) fn fell_asleep(&mut self, particle: u32) {
+        if let Some(trace) = self.traces.own(particle) {
+            trace.partner = Partner::Nobody;
+            trace.confined = 0;
+        }
+    }
+
+    /// A grain's collisions with static obstacles are counted as from now on; nothing if
+    /// it has not made any.
+    pub(super) fn confine_from(&mut self, particle: u32, now: Time) -> Option<f64> {
+        let trace = self.traces.own(particle)?;
+        let lasted = now - trace.confined_since;
+        trace.confined_since = now;
+        Some(lasted)
+    }
+
+    /// Gives back the room of traces that say no more than that there is nothing to say.
+    pub(super) fn tidy(&mut self, now: Time) {
+        let is_void = |trace: &Trace| {
+            let over = now - trace.last > INSTANT.max(self.moment);
+            over && trace.confined == 0 && trace.partner == Partner::Nobody
+        };
+        let void: Vec<u32> = self
+            .traces
+            .each()
+            .filter(|(_, trace)| is_void(trace))
+            .map(|(particle, _)| particle)
+            .collect();
+        for particle in void {
+            self.traces.clear(particle);
+        }
+    }
+
+    pub(super) fn save(&self) -> SavedTraces {
+        SavedTraces {
+            traces: self.traces.save(),
+            holds: self.holds.clone(),
+            hold: self.hold,
+            moment: self.moment,
+        }
+    }
+
+    /// The traces that were saved, of so many grains.
+    ///
+    /// # Errors
+    ///
+    /// If they name somebody who is not there, or one twice.
+    pub(super) fn restore(saved: SavedTraces, count: usize) -> Result<Self, &'static str> {
+        Ok(Traces {
+            traces: Sparse::restore(saved.traces, count, Trace::NONE)?,
+            holds: saved.holds,
+            hold: saved.hold,
+            moment: saved.moment,
+        })
     }
 
     /// Notes a collision at this closing speed, with a static obstacle or not;
@@ -143,7 +226,7 @@ impl Traces {
         speed: f64,
         now: Time,
     ) -> u32 {
-        let trace = &mut self.traces[particle as usize];
+        let trace = self.traces.make(particle);
         trace.confined = if is_static {
             trace.confined.wrapping_add(1)
         } else {
@@ -207,16 +290,11 @@ impl Traces {
     }
 }
 
-impl Index<usize> for Traces {
+impl Index<u32> for Traces {
     type Output = Trace;
 
-    fn index(&self, index: usize) -> &Trace {
-        &self.traces[index]
-    }
-}
-
-impl IndexMut<usize> for Traces {
-    fn index_mut(&mut self, index: usize) -> &mut Trace {
-        &mut self.traces[index]
+    #[inline]
+    fn index(&self, particle: u32) -> &Trace {
+        &self.traces[particle]
     }
 }

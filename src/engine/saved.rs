@@ -15,7 +15,7 @@ use crate::engine::body::{Body, World, flight_of};
 use crate::engine::consistency::Vigil;
 use crate::engine::counts::{Counts, ModeCounts};
 use crate::engine::glances::Glances;
-use crate::engine::guards::Traces;
+use crate::engine::guards::{SavedTraces, Traces};
 use crate::engine::leaning::{Edge, Leaning};
 use crate::engine::ledger::Ledger;
 use crate::engine::neighbours::{Neighbours, SavedNeighbours};
@@ -55,7 +55,7 @@ pub struct Saved<R, E, S, const D: usize> {
     alarms: Vec<Alarm<E>>,
     alarm_count: u64,
     leaning: Vec<Vec<Edge>>,
-    traces: Traces,
+    traces: SavedTraces,
     near: SavedNeighbours<D>,
     largest: f64,
     ledger: Ledger,
@@ -111,7 +111,7 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
             alarms,
             alarm_count: self.alarm_count,
             leaning: self.leaning.save(),
-            traces: self.traces.clone(),
+            traces: self.traces.save(),
             near: self.world.near.save(),
             largest: self.world.largest,
             ledger: self.world.ledger.clone(),
@@ -178,7 +178,7 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
             alarms: saved.alarms.into_iter().map(Reverse).collect(),
             alarm_count: saved.alarm_count,
             leaning: Leaning::restore(saved.leaning, count).map_err(wrong)?,
-            traces: saved.traces,
+            traces: Traces::restore(saved.traces, count).map_err(wrong)?,
             counts: saved.counts,
             deepest: saved.deepest,
             speeds: Speeds::unknown(saved.clock),

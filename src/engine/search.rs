@@ -50,7 +50,7 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
             // work on all others. Where the two see each other move uniformly they
             // part for ever, and a glance will do.
             let (mut asked, mut back) = (None, None);
-            if let Partner::Particle(last) = self.traces[particle as usize].partner
+            if let Partner::Particle(last) = self.traces[particle].partner
                 && !self.world.see_each_other(particle, last)
                 && let Some(link) = self.world.near.listed(particle, last)
             {
@@ -253,7 +253,7 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
             return None;
         }
         let mut flight = self.world.flight(model, particle);
-        let mut touching = self.traces[particle as usize].partner == Partner::Wall(wall);
+        let mut touching = self.traces[particle].partner == Partner::Wall(wall);
         let mut radius = body.radius * scale_at::<M, D>(model, base);
         let growth = if M::Dynamics::GROWS {
             body.radius * model.dynamics().growth_rate()
@@ -300,12 +300,11 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
             &self.world.bodies[first as usize],
             &self.world.bodies[second as usize],
         );
-        let first_left = self.traces[first as usize].partner == Partner::Particle(second);
-        let second_left = self.traces[second as usize].partner == Partner::Particle(first);
+        let left = |one: u32, other: u32| self.traces[one].partner == Partner::Particle(other);
         match (a.mode.is_mobile(), b.mode.is_mobile()) {
-            (true, true) => first_left && second_left && a.since == b.since,
-            (true, false) => first_left && b.since <= a.since,
-            (false, true) => second_left && a.since <= b.since,
+            (true, true) => a.since == b.since && left(first, second) && left(second, first),
+            (true, false) => b.since <= a.since && left(first, second),
+            (false, true) => a.since <= b.since && left(second, first),
             (false, false) => false,
         }
     }

@@ -14,7 +14,7 @@ use crate::engine::neighbours::Neighbours;
 use crate::engine::queue::EventQueue;
 use crate::engine::settings::Settings;
 use crate::engine::simulation::Simulation;
-use crate::engine::slot::{Partner, Slot};
+use crate::engine::slot::Slot;
 use crate::engine::sparse::Sparse;
 use crate::engine::speeds::Speeds;
 use crate::engine::walls::{check_distance, check_walls};
@@ -230,7 +230,7 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
             self.world
                 .note_change(Entry::GivenBack, particle, &before.velocity, &velocity);
         }
-        self.traces[id.index()].partner = Partner::Nobody;
+        self.traces.forget_partner(particle);
         self.tie_if_moving(particle);
         self.note_speed(particle);
         self.tell_woken(particle, &WakeCause::Event);

@@ -174,6 +174,7 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
     pub(super) fn begin_epoch(&mut self) {
         self.epoch_events = self.counts.total();
         self.world.begin_epoch(&self.model, self.world.clock);
+        self.traces.tidy(self.world.clock);
         for (particle, slot) in self.slots.each() {
             self.world.glances.set_bound(particle, slot.bound());
         }

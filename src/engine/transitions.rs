@@ -8,7 +8,6 @@ use serde::{Deserialize, Serialize};
 use crate::engine::ledger::Entry;
 use crate::engine::queue::{Key, Rank};
 use crate::engine::simulation::Simulation;
-use crate::engine::slot::Partner;
 use crate::engine::view::View;
 use crate::model::{
     Dynamics, EventOf, Flight, Model, Observer, Occurrence, OccurrenceKind, Reason, Response,
@@ -83,7 +82,7 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
         self.world
             .note_change(Entry::Sleep, particle, &state.velocity, &rest);
         self.slots.clear(particle);
-        self.traces[particle as usize].partner = Partner::Nobody;
+        self.traces.fell_asleep(particle);
         // Ground that moves may be faster than the grain was.
         self.note_speed(particle);
         self.schedule();
@@ -239,7 +238,7 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
         );
         self.world
             .note_change(Entry::GivenBack, particle, &before.velocity, &velocity);
-        self.traces[particle as usize].partner = Partner::Nobody;
+        self.traces.forget_partner(particle);
         self.tie_if_moving(particle);
         self.note_speed(particle);
         self.counts.check_wake += 1;
