@@ -6,12 +6,15 @@
 //! where an entry lies, never which comes first.
 
 mod check;
+mod lists;
 #[cfg(test)]
 mod tests;
 
 use std::hint::black_box;
 
 use serde::{Deserialize, Serialize};
+
+use lists::Lists;
 
 use crate::time::Time;
 
@@ -37,8 +40,8 @@ pub(super) struct Key {
 const NOWHERE: u32 = u32::MAX;
 /// Marks a place as a position in the heap.
 const IN_HEAP: u32 = 1 << 31;
-/// Entries beyond the last slot of the calendar.
-const BEYOND: usize = 0;
+/// The list of entries beyond the last slot of the calendar.
+const BEYOND: u32 = 0;
 
 /// An entry in the heap.
 #[derive(Clone, Copy, Debug)]
@@ -47,48 +50,38 @@ struct Entry {
     particle: u32,
 }
 
-/// Where the entry of a grain lies.
-#[derive(Clone, Copy, Debug)]
-struct Berth {
-    /// Position in the heap, or the list (slot + 1, or `BEYOND`) it is filed in.
-    place: u32,
-    /// Neighbours in that list.
-    next: u32,
-    previous: u32,
+/// Position in the heap, if this place is one.
+#[inline]
+fn in_heap(place: u32) -> Option<usize> {
+    (place != NOWHERE && place & IN_HEAP != 0).then_some((place & !IN_HEAP) as usize)
 }
 
-impl Berth {
-    const NONE: Berth = Berth {
-        place: NOWHERE,
-        next: NOWHERE,
-        previous: NOWHERE,
-    };
+/// Slots of a calendar, however few entries there are: at the end of a turn it takes a look at
+/// all that lie beyond.
+const FEWEST: usize = 4096;
 
-    #[inline]
-    fn in_heap(self) -> Option<usize> {
-        (self.place != NOWHERE && self.place & IN_HEAP != 0)
-            .then_some((self.place & !IN_HEAP) as usize)
-    }
-
-    /// The list that holds the entry, if one does.
-    #[inline]
-    fn list(self) -> Option<usize> {
-        (self.place & IN_HEAP == 0).then_some(self.place as usize)
-    }
+/// How many slots the calendar of so many entries has: a power of two.
+fn slots_for(entries: usize) -> usize {
+    (2 * entries).next_power_of_two().clamp(FEWEST, 1 << 20)
 }
 
 /// One entry for each of a set of grains, named by index.
 ///
 /// What an entry says is kept in the heap alone. For those that are only filed, who
 /// asks for the earliest says it again: it must be what it was when they were set.
+///
+/// Nobody is taken off a list: an id on it whose entry lies elsewhere by now is passed
+/// over when its slot is opened. So an entry that is set anew costs no more than a line
+/// on another list, and is kept nowhere but there and in one number.
 #[derive(Clone, Debug)]
 pub(super) struct EventQueue {
-    berths: Vec<Berth>,
-    /// First entries of the lists: `BEYOND`, then one for each slot.
-    heads: Vec<u32>,
+    /// Where the entry of each grain lies: its position in the heap, or the list
+    /// (`BEYOND`, or slot + 1) it is filed in.
+    places: Vec<u32>,
+    lists: Lists,
     heap: Vec<Entry>,
-    /// Entries filed in slots.
-    filed: usize,
+    /// Entries filed in slots, and beyond the last.
+    filed: [usize; 2],
     /// Start of slot 0 of the calendar.
     origin: Time,
     /// Length of a slot.
@@ -103,12 +96,12 @@ pub(super) struct EventQueue {
 
 impl EventQueue {
     pub(super) fn new(capacity: usize, start: Time) -> Self {
-        let slots = (2 * capacity).next_power_of_two().clamp(256, 1 << 20);
+        let slots = slots_for(capacity);
         EventQueue {
-            berths: Vec::with_capacity(capacity),
-            heads: vec![NOWHERE; slots + 1],
+            places: Vec::with_capacity(capacity),
+            lists: Lists::new(slots + 1),
             heap: Vec::new(),
-            filed: 0,
+            filed: [0; 2],
             origin: start,
             width: 1.0 / slots as f64,
             per_time: slots as f64,
@@ -119,7 +112,7 @@ impl EventQueue {
 
     /// Makes room for one more grain, without an entry.
     pub(super) fn push_empty(&mut self) {
-        self.berths.push(Berth::NONE);
+        self.places.push(NOWHERE);
     }
 
     /// The slot of the calendar that is being served.
@@ -132,24 +125,22 @@ impl EventQueue {
     #[inline]
     pub(super) fn filed_in(&self, slot: i64) -> impl Iterator<Item = u32> {
         let ahead = slot > self.current && slot - self.current < self.slots();
-        let list = (slot & (self.slots() - 1)) as usize + 1;
-        let known = |particle: u32| (particle != NOWHERE).then_some(particle);
-        let first = if ahead { known(self.heads[list]) } else { None };
-        let next = move |particle: &u32| known(self.berths[*particle as usize].next);
-        std::iter::successors(first, next)
+        let list = self.list_in_turn(slot);
+        let ids = ahead.then(|| self.lists.each(list)).into_iter().flatten();
+        ids.filter(move |particle| self.is_on(*particle, list))
     }
 
     /// Reads where an entry lies, to have it at hand.
     #[inline]
     pub(super) fn touch(&self, particle: u32) {
-        black_box(self.berths[particle as usize].place);
+        black_box(self.places[particle as usize]);
     }
 
     /// Takes back the last grain that room was made for.
     pub(super) fn forget_last(&mut self) {
-        if let Some(last) = self.berths.len().checked_sub(1) {
+        if let Some(last) = self.places.len().checked_sub(1) {
             self.take_out(last as u32);
-            self.berths.pop();
+            self.places.pop();
         }
     }
 
@@ -167,13 +158,13 @@ impl EventQueue {
 
     /// Gives a grain another entry, or none if `key.time` is never.
     pub(super) fn set(&mut self, particle: u32, key: Key) {
-        let berth = self.berths[particle as usize];
+        let place = self.places[particle as usize];
         if !key.time.is_finite() {
             self.take_out(particle);
             return;
         }
         let slot = self.slot_of(key.time);
-        if let Some(position) = berth.in_heap() {
+        if let Some(position) = in_heap(place) {
             if slot <= self.current {
                 // The common case: stays in the heap.
                 let entry = Entry { key, particle };
@@ -186,7 +177,7 @@ impl EventQueue {
                 }
                 return;
             }
-        } else if slot > self.current && berth.list() == Some(self.list_of(slot)) {
+        } else if slot > self.current && place == self.list_of(slot) {
             return;
         }
         self.take_out(particle);
@@ -195,7 +186,7 @@ impl EventQueue {
 
     /// How many slots there are: a power of two.
     fn slots(&self) -> i64 {
-        self.heads.len() as i64 - 1
+        self.lists.len() as i64 - 1
     }
 
     fn slot_of(&self, time: Time) -> i64 {
@@ -204,62 +195,60 @@ impl EventQueue {
     }
 
     /// The list for a slot that is still to come.
-    fn list_of(&self, slot: i64) -> usize {
+    #[inline]
+    fn list_of(&self, slot: i64) -> u32 {
         if slot - self.current < self.slots() {
-            (slot & (self.slots() - 1)) as usize + 1
+            self.list_in_turn(slot)
         } else {
             BEYOND
         }
     }
 
+    /// The list for a slot of this turn of the calendar.
+    #[inline]
+    fn list_in_turn(&self, slot: i64) -> u32 {
+        (slot & (self.slots() - 1)) as u32 + 1
+    }
+
+    /// Whether an id on a list stands for an entry.
+    #[inline]
+    fn is_on(&self, particle: u32, list: u32) -> bool {
+        self.places.get(particle as usize) == Some(&list)
+    }
+
+    #[inline]
     fn file(&mut self, particle: u32, slot: i64, key: Key) {
         if slot <= self.current {
             self.push(Entry { key, particle });
             return;
         }
         let list = self.list_of(slot);
-        self.filed += usize::from(list != BEYOND);
-        let head = self.heads[list];
-        self.berths[particle as usize] = Berth {
-            place: list as u32,
-            next: head,
-            previous: NOWHERE,
-        };
-        if head != NOWHERE {
-            self.berths[head as usize].previous = particle;
-        }
-        self.heads[list] = particle;
+        self.filed[usize::from(list == BEYOND)] += 1;
+        self.places[particle as usize] = list;
+        self.lists.add(list, particle);
     }
 
     fn take_out(&mut self, particle: u32) {
-        let berth = std::mem::replace(&mut self.berths[particle as usize], Berth::NONE);
-        if let Some(position) = berth.in_heap() {
+        let place = std::mem::replace(&mut self.places[particle as usize], NOWHERE);
+        if let Some(position) = in_heap(place) {
             self.served += u64::from(position == 0);
             self.heap.swap_remove(position);
             if let Some(&moved) = self.heap.get(position) {
                 self.sift_up(position, moved);
-                let position = self.berths[moved.particle as usize].in_heap();
+                let position = in_heap(self.places[moved.particle as usize]);
                 self.sift_down(position.unwrap_or_default(), moved);
             }
-        } else if let Some(list) = berth.list() {
-            if berth.next != NOWHERE {
-                self.berths[berth.next as usize].previous = berth.previous;
-            }
-            if berth.previous == NOWHERE {
-                self.heads[list] = berth.next;
-            } else {
-                self.berths[berth.previous as usize].next = berth.next;
-            }
-            self.filed -= usize::from(list != BEYOND);
+        } else if place != NOWHERE {
+            self.filed[usize::from(place == BEYOND)] -= 1;
         }
     }
 
     /// Moves the next slot into the empty heap; false if nothing is left.
     fn turn_page(&mut self, key: &impl Fn(u32) -> Key) -> bool {
-        if self.filed == 0 {
-            if self.heads[BEYOND] == NOWHERE {
-                return false;
-            }
+        if self.filed == [0; 2] {
+            return false;
+        }
+        if self.filed[0] == 0 {
             // A gap: start a new calendar at the earliest entry.
             self.rebuild(self.width * 2.0, key);
             return true;
@@ -275,50 +264,71 @@ impl EventQueue {
             } else {
                 self.width
             };
-            self.rebuild(width, key);
-            return true;
+            let slots = slots_for(self.filed[0] + self.filed[1]) as i64;
+            if width != self.width || slots != self.slots() {
+                self.rebuild(width, key);
+                return true;
+            }
+            for Entry { key, particle } in self.unfile(BEYOND, key) {
+                self.file(particle, self.slot_of(key.time), key);
+            }
         }
-        let list = (self.current & (self.slots() - 1)) as usize + 1;
-        let mut particle = std::mem::replace(&mut self.heads[list], NOWHERE);
-        while particle != NOWHERE {
-            let following = self.berths[particle as usize].next;
-            self.filed -= 1;
-            self.push(Entry {
-                key: key(particle),
-                particle,
-            });
-            particle = following;
+        let list = self.list_in_turn(self.current);
+        let mut page = self.lists.take(list);
+        while let Some(few) = self.lists.next(&mut page) {
+            for &particle in few.ids() {
+                if self.is_on(particle, list) {
+                    self.filed[0] -= 1;
+                    self.push(Entry {
+                        key: key(particle),
+                        particle,
+                    });
+                }
+            }
         }
         true
     }
 
-    /// Files everything anew, from the earliest entry on.
+    /// Files everything anew, from the earliest entry on; the heap is empty.
     fn rebuild(&mut self, width: f64, key: &impl Fn(u32) -> Key) {
-        let filed = (0..self.berths.len() as u32)
-            .filter(|&particle| self.berths[particle as usize].place != NOWHERE);
-        if let Some(start) = filed.map(|particle| key(particle).time).min() {
+        let lists = 0..self.lists.len() as u32;
+        let all: Vec<Entry> = lists.flat_map(|list| self.unfile(list, key)).collect();
+        if let Some(start) = all.iter().map(|entry| entry.key.time).min() {
             self.origin = start;
         }
         self.width = width.clamp(1.0e-14, 1.0e6);
         self.per_time = 1.0 / self.width;
         self.current = 0;
-        self.filed = 0;
-        self.heap.clear();
-        self.heads.fill(NOWHERE);
-        for particle in 0..self.berths.len() as u32 {
-            if self.berths[particle as usize].place != NOWHERE {
-                let key = key(particle);
-                self.file(particle, self.slot_of(key.time), key);
-            }
+        self.lists = Lists::new(slots_for(all.len()) + 1);
+        for Entry { key, particle } in all {
+            self.file(particle, self.slot_of(key.time), key);
         }
     }
 
+    /// Takes all entries from a list.
+    fn unfile(&mut self, list: u32, key: &impl Fn(u32) -> Key) -> Vec<Entry> {
+        let mut all = Vec::new();
+        let mut page = self.lists.take(list);
+        while let Some(few) = self.lists.next(&mut page) {
+            for &particle in few.ids() {
+                if self.is_on(particle, list) {
+                    self.take_out(particle);
+                    let key = key(particle);
+                    all.push(Entry { key, particle });
+                }
+            }
+        }
+        all
+    }
+
+    #[inline]
     fn push(&mut self, entry: Entry) {
         self.heap.push(entry);
         self.sift_up(self.heap.len() - 1, entry);
     }
 
     /// Puts an entry into the heap at a position, or above.
+    #[inline]
     fn sift_up(&mut self, mut position: usize, entry: Entry) {
         while position > 0 {
             let parent = (position - 1) / 2;
@@ -357,6 +367,6 @@ impl EventQueue {
     #[inline]
     fn put(&mut self, position: usize, entry: Entry) {
         self.heap[position] = entry;
-        self.berths[entry.particle as usize].place = position as u32 | IN_HEAP;
+        self.places[entry.particle as usize] = position as u32 | IN_HEAP;
     }
 }

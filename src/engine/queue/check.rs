@@ -1,13 +1,13 @@
 //! Whether the queue's own book-keeping holds.
 
-use crate::engine::queue::{BEYOND, EventQueue, Key, NOWHERE};
+use crate::engine::queue::{BEYOND, EventQueue, Key, NOWHERE, in_heap};
 
 impl EventQueue {
     /// Where the entry of a grain, which says this, is said to lie, it must lie, and in
     /// the right order.
     pub(in crate::engine) fn check_entry(&self, particle: u32, key: Key) -> Result<(), String> {
-        let berth = self.berths[particle as usize];
-        if berth.place == NOWHERE {
+        let place = self.places[particle as usize];
+        if place == NOWHERE {
             return if key.time.is_finite() {
                 Err(format!(
                     "the entry of grain {particle}, {key:?}, is nowhere"
@@ -20,7 +20,7 @@ impl EventQueue {
             return Err(format!("grain {particle} is filed without an entry"));
         }
         let slot = self.slot_of(key.time);
-        if let Some(position) = berth.in_heap() {
+        if let Some(position) = in_heap(place) {
             let there = self.heap.get(position);
             let Some(entry) = there.filter(|entry| entry.particle == particle) else {
                 return Err(format!("grain {particle} is not at {position} of the heap"));
@@ -41,7 +41,6 @@ impl EventQueue {
             }
             return Ok(());
         }
-        let place = berth.place as usize;
         // What was beyond the calendar may lie within it by now.
         if slot <= self.current || (place != self.list_of(slot) && place != BEYOND) {
             return Err(format!(
@@ -49,27 +48,23 @@ impl EventQueue {
                 self.current
             ));
         }
-        let follows = match berth.previous {
-            NOWHERE => self.heads[place] == particle,
-            previous => self.berths[previous as usize].next == particle,
-        };
-        let next = berth.next;
-        let precedes = next == NOWHERE || self.berths[next as usize].previous == particle;
-        if !follows || !precedes {
-            return Err(format!("grain {particle} is not linked in list {place}"));
+        if !self.lists.each(place).any(|id| id == particle) {
+            return Err(format!("grain {particle} is not on list {place}"));
         }
         Ok(())
     }
 
     /// The numbers of entries.
     pub(in crate::engine) fn check_numbers(&self) -> Result<(), String> {
-        let (mut filed, mut heaped) = (0, 0);
-        for berth in &self.berths {
-            heaped += usize::from(berth.in_heap().is_some());
-            filed += usize::from(berth.list().is_some_and(|list| list != BEYOND));
+        let (mut filed, mut heaped) = ([0; 2], 0);
+        for &place in self.places.iter().filter(|place| **place != NOWHERE) {
+            match in_heap(place) {
+                Some(_) => heaped += 1,
+                None => filed[usize::from(place == BEYOND)] += 1,
+            }
         }
         if filed != self.filed {
-            return Err(format!("{filed} entries are filed, not {}", self.filed));
+            return Err(format!("{filed:?} entries are filed, not {:?}", self.filed));
         }
         if heaped != self.heap.len() {
             return Err("the heap holds more entries than there are".into());
