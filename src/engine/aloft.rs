@@ -2,8 +2,8 @@
 //!
 //! The grains of a rain fall side by side, uniformly and equally fast, so they never
 //! meet each other; nor anybody else before they come down to where others are. Up to
-//! there they are *aloft*: without a neighbour list, in the grid still where they
-//! started, and one entry in the queue, that of the lowest, stands for all of them.
+//! there they are *aloft*: without a neighbour list, found by nobody in the grid, and one
+//! entry in the queue, that of the lowest, stands for all of them.
 //!
 //! What holds: every grain that is not aloft, and not falling with them, stays below
 //! the *ceiling* until its list is made again, and those aloft stay more than a
@@ -202,6 +202,9 @@ impl<const D: usize> World<D> {
             let height = self.height(particle);
             if self.aloft.waiting[place].0 != height {
                 return Err(format!("grain {particle} is not at height {height}"));
+            }
+            if self.near.is_found(particle) {
+                return Err(format!("grain {particle} is aloft and in the grid"));
             }
         } else if !self.aloft.is_empty()
             && !self.is_with_them(particle)

@@ -119,8 +119,14 @@ pub(super) struct Found<const D: usize> {
 
 impl<const D: usize> Cells<D> {
     /// A grid for grains at these positions; grains in cells that are not
-    /// neighbours are farther apart than `reach`.
-    pub(super) fn new<B: Boundary<D>>(boundary: &B, positions: &[Vector<D>], reach: f64) -> Self {
+    /// neighbours are farther apart than `reach`. Those of them that are not `found`
+    /// in it yet are as soon as they are filed anew.
+    pub(super) fn new<B: Boundary<D>>(
+        boundary: &B,
+        positions: &[Vector<D>],
+        reach: f64,
+        found: impl Fn(u32) -> bool,
+    ) -> Self {
         let (low, span) = extents(boundary, positions, reach);
         // Not many more cells than grains, however thin the gas.
         let most_cells = 4.0 * positions.len() as f64 + 4096.0;
@@ -150,8 +156,11 @@ impl<const D: usize> Cells<D> {
             spots: Vec::with_capacity(positions.len()),
             seats: Vec::with_capacity(positions.len()),
         };
-        for position in positions {
-            cells.add(position);
+        for (particle, position) in (0..).zip(positions) {
+            cells.seat(position);
+            if found(particle) {
+                cells.link(particle);
+            }
         }
         cells
     }
@@ -201,10 +210,14 @@ impl<const D: usize> Cells<D> {
 
     /// Seats one more grain.
     pub(super) fn add(&mut self, position: &Vector<D>) {
+        self.seat(position);
+        self.link(self.seats.len() as u32 - 1);
+    }
+
+    fn seat(&mut self, position: &Vector<D>) {
         let (seat, home) = self.seat_for(position);
         self.seats.push(seat);
         self.spots.push(Spot { home, reach: 0.0 });
-        self.link(self.seats.len() as u32 - 1);
     }
 
     /// The cell for a position, and the image of the position in it.
@@ -248,7 +261,7 @@ impl<const D: usize> Cells<D> {
     /// Unseats the grain that was seated last.
     pub(super) fn forget_last(&mut self) {
         if let Some(last) = self.seats.len().checked_sub(1) {
-            self.unlink(last as u32);
+            self.rooms.leave(self.cell_of(last as u32), last as u32);
             self.seats.pop();
             self.spots.pop();
         }
@@ -274,12 +287,11 @@ impl<const D: usize> Cells<D> {
     pub(super) fn refile(&mut self, particle: u32, position: &Vector<D>, reach: f64) {
         let (seat, home) = self.seat_for(position);
         self.spots[particle as usize] = Spot { home, reach };
-        if seat.cell == self.seats[particle as usize].cell {
-            self.seats[particle as usize] = seat;
-            self.relink(particle);
-        } else {
-            self.unlink(particle);
-            self.seats[particle as usize] = seat;
+        let old = std::mem::replace(&mut self.seats[particle as usize], seat);
+        if seat.cell != old.cell {
+            self.rooms.leave(self.index_of(&old), particle);
+            self.link(particle);
+        } else if !self.relink(particle) {
             self.link(particle);
         }
     }
@@ -457,11 +469,14 @@ impl<const D: usize> Cells<D> {
         }
     }
 
-    fn index_of(&self, particle: u32) -> usize {
-        let cell = &self.seats[particle as usize].cell;
+    fn index_of(&self, seat: &Seat<D>) -> usize {
         (0..D)
-            .map(|axis| cell[axis] as usize * self.axes[axis].stride)
+            .map(|axis| seat.cell[axis] as usize * self.axes[axis].stride)
             .sum()
+    }
+
+    fn cell_of(&self, particle: u32) -> usize {
+        self.index_of(&self.seats[particle as usize])
     }
 
     /// A grain as the others in its cell know it.
@@ -475,18 +490,15 @@ impl<const D: usize> Cells<D> {
     }
 
     fn link(&mut self, particle: u32) {
-        let (cell, guest) = (self.index_of(particle), self.guest(particle));
+        let (cell, guest) = (self.cell_of(particle), self.guest(particle));
         self.rooms.enter(cell, particle, &guest);
     }
 
-    /// A grain is filed at another place in its cell, or reaches farther.
-    fn relink(&mut self, particle: u32) {
-        let (cell, guest) = (self.index_of(particle), self.guest(particle));
-        self.rooms.shift(cell, particle, &guest);
-    }
-
-    fn unlink(&mut self, particle: u32) {
-        self.rooms.leave(self.index_of(particle), particle);
+    /// A grain is filed at another place in its cell, or reaches farther; false if it is
+    /// not found there.
+    fn relink(&mut self, particle: u32) -> bool {
+        let (cell, guest) = (self.cell_of(particle), self.guest(particle));
+        self.rooms.shift(cell, particle, &guest)
     }
 }
 

@@ -80,12 +80,18 @@ pub(super) struct Neighbours<const D: usize> {
 
 impl<const D: usize> Neighbours<D> {
     /// Without lists yet, for grains at these positions whose centres touch at
-    /// no more than `largest`.
-    pub(super) fn new<B: Boundary<D>>(boundary: &B, positions: &[Vector<D>], largest: f64) -> Self {
+    /// no more than `largest`. Nobody finds those that are not to be `found`, before they
+    /// are tied or released.
+    pub(super) fn new<B: Boundary<D>>(
+        boundary: &B,
+        positions: &[Vector<D>],
+        largest: f64,
+        found: impl Fn(u32) -> bool,
+    ) -> Self {
         let long = leash_for(Cells::crowding(boundary, positions, largest), D);
         // Everybody is found in adjacent cells.
         let reach = (1.0 + 2.0 * long) * largest;
-        let cells = Cells::new(boundary, positions, reach);
+        let cells = Cells::new(boundary, positions, reach, found);
         Neighbours {
             rings: rings(&cells, reach),
             cells,

@@ -80,7 +80,7 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
         }
         check_periods(&model, largest * scale)?;
         let count = particles.len();
-        let near = Neighbours::new(model.boundary(), &[], 1.0);
+        let near = Neighbours::new(model.boundary(), &[], 1.0, |_| true);
         let mut simulation = Simulation {
             settings,
             world: World {

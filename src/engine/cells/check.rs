@@ -7,6 +7,11 @@ use crate::engine::cells::Cells;
 const ROUND: f64 = 1.0e-9;
 
 impl<const D: usize> Cells<D> {
+    /// Whether those who look around find a grain.
+    pub(in crate::engine) fn is_found(&self, particle: u32) -> bool {
+        self.rooms.holds(self.cell_of(particle), particle)
+    }
+
     /// A grain has to sit in the cell of its anchor, and in that cell's room.
     pub(in crate::engine) fn check_seat(&self, particle: u32) -> Result<(), String> {
         let seat = &self.seats[particle as usize];
@@ -27,7 +32,7 @@ impl<const D: usize> Cells<D> {
                 ));
             }
         }
-        if !self.rooms.holds(self.index_of(particle), particle) {
+        if !self.is_found(particle) {
             return Err(format!("grain {particle} is not linked in its cell"));
         }
         Ok(())

@@ -200,11 +200,13 @@ impl<const D: usize> Rooms<D> {
         self.find(cell, particle).is_some()
     }
 
-    /// Moves a grain within its cell.
-    pub(super) fn shift(&mut self, cell: usize, particle: u32, guest: &Guest<D>) {
-        if let Some((block, lane)) = self.find(cell, particle) {
+    /// Moves a grain within its cell; false if it is not there.
+    pub(super) fn shift(&mut self, cell: usize, particle: u32, guest: &Guest<D>) -> bool {
+        let found = self.find(cell, particle);
+        if let Some((block, lane)) = found {
             self.blocks[block as usize].put(lane, particle, guest);
         }
+        found.is_some()
     }
 
     /// Takes a grain out of a cell; who came last takes its place.

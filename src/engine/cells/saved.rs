@@ -19,7 +19,7 @@ pub(in crate::engine) struct SavedCells<const D: usize> {
     axes: Vec<(f64, f64, i32)>,
     /// The cell of each grain, and the periods from there to where it is stored.
     cells: Vec<(SVector<i32, D>, SVector<i32, D>)>,
-    /// In which order the grains have to be seated: cell by cell.
+    /// In which order the grains that are found in it have to be seated: cell by cell.
     order: Vec<u32>,
 }
 
@@ -51,7 +51,7 @@ impl<const D: usize> Cells<D> {
         saved: &SavedCells<D>,
         count: usize,
     ) -> Result<Self, &'static str> {
-        if saved.axes.len() != D || saved.cells.len() != count || saved.order.len() != count {
+        if saved.axes.len() != D || saved.cells.len() != count || saved.order.len() > count {
             return Err("the grid is not for these grains");
         }
         let mut stride: usize = 1;

@@ -9,6 +9,11 @@ use crate::particle::Vector;
 const ROUND: f64 = 1.0 - 1.0e-9;
 
 impl<const D: usize> Neighbours<D> {
+    /// Whether those who look around find a grain.
+    pub(in crate::engine) fn is_found(&self, particle: u32) -> bool {
+        self.cells.is_found(particle)
+    }
+
     /// A grain that is now at `position` has to be on its leash, in its cell,
     /// and on the list of everybody on its own.
     pub(in crate::engine) fn check_tie(
@@ -44,7 +49,8 @@ impl<const D: usize> Neighbours<D> {
         Ok(())
     }
 
-    /// Whoever two leashes let touch has to be on the list of a grain.
+    /// Whoever two leashes let touch has to be on the list of a grain, but for those
+    /// that nobody is to find.
     pub(in crate::engine) fn check_complete(
         &self,
         particle: u32,
@@ -55,7 +61,7 @@ impl<const D: usize> Neighbours<D> {
             return Ok(());
         }
         for other in 0..self.ties.len() as u32 {
-            if other == particle {
+            if other == particle || !self.is_found(other) {
                 continue;
             }
             let home = |id: u32| self.cells.spot(id).home;

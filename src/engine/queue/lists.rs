@@ -121,7 +121,7 @@ mod tests {
             for (id, (list, kind)) in (0..).zip(steps) {
                 if kind == 0 {
                     let mut rest = lists.take(list);
-                    let mut ids = Vec::new();
+                    let mut ids: Vec<u32> = Vec::new();
                     while let Some(few) = lists.next(&mut rest) {
                         ids.extend(few.ids());
                     }
@@ -132,7 +132,7 @@ mod tests {
                     plain[list as usize].push(id);
                 }
                 for (list, plain) in (0..).zip(&plain) {
-                    let mut ids: Vec<u32> = lists.each(list).collect();
+                    let mut ids = lists.each(list).collect::<Vec<u32>>();
                     ids.sort_unstable();
                     prop_assert_eq!(&ids, plain);
                 }
