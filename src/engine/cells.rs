@@ -61,6 +61,12 @@ impl Axis {
         self.origin + f64::from(cell) * self.edge
     }
 
+    /// What a cell adds to the place in a list of all.
+    #[inline]
+    fn step(&self, cell: i32) -> u32 {
+        (cell as usize * self.stride) as u32
+    }
+
     /// The cell of the grid that a cell is an image of, and how many periods
     /// away it is.
     #[inline]
@@ -95,7 +101,8 @@ pub(super) struct Spot<const D: usize> {
 /// Under which cell a grain is filed.
 #[derive(Clone, Copy, Debug)]
 struct Seat<const D: usize> {
-    cell: [i32; D],
+    /// Where the cell is in a list of all.
+    cell: u32,
     /// From the image in the grid to the one that is stored, in periods.
     turns: [i32; D],
 }
@@ -129,7 +136,7 @@ impl<const D: usize> Cells<D> {
     ) -> Self {
         let (low, span) = extents(boundary, positions, reach);
         // Not many more cells than grains, however thin the gas.
-        let most_cells = 4.0 * positions.len() as f64 + 4096.0;
+        let most_cells = most_cells(positions.len()) as f64;
         let mut edge = reach * SLACK;
         let cells_of = |edge: f64, axis: usize| (span[axis] / edge).floor().clamp(1.0, 1.0e9);
         while (0..D).map(|axis| cells_of(edge, axis)).product::<f64>() > most_cells {
@@ -225,18 +232,19 @@ impl<const D: usize> Cells<D> {
     fn seat_for(&self, position: &Vector<D>) -> (Seat<D>, Vector<D>) {
         let mut home = *position;
         let mut seat = Seat {
-            cell: [0; D],
+            cell: 0,
             turns: [0; D],
         };
         for k in 0..D {
             let axis = &self.axes[k];
             let place = ((position[k] - axis.origin) * axis.per_edge).floor();
             if axis.period.is_none() {
-                seat.cell[k] = place.clamp(0.0, f64::from(axis.count - 1)) as i32;
+                let cell = place.clamp(0.0, f64::from(axis.count - 1)) as i32;
+                seat.cell += axis.step(cell);
                 continue;
             }
             let (cell, turns) = axis.wrapped(place as i32);
-            seat.cell[k] = cell;
+            seat.cell += axis.step(cell);
             seat.turns[k] = turns;
             if turns != 0 {
                 home[k] -= f64::from(turns) * axis.length();
@@ -261,7 +269,7 @@ impl<const D: usize> Cells<D> {
     /// Unseats the grain that was seated last.
     pub(super) fn forget_last(&mut self) {
         if let Some(last) = self.seats.len().checked_sub(1) {
-            self.rooms.leave(self.cell_of(last as u32), last as u32);
+            self.rooms.leave(self.place_of(last as u32), last as u32);
             self.seats.pop();
             self.spots.pop();
         }
@@ -289,7 +297,7 @@ impl<const D: usize> Cells<D> {
         self.spots[particle as usize] = Spot { home, reach };
         let old = std::mem::replace(&mut self.seats[particle as usize], seat);
         if seat.cell != old.cell {
-            self.rooms.leave(self.index_of(&old), particle);
+            self.rooms.leave(old.cell as usize, particle);
             self.link(particle);
         } else if !self.relink(particle) {
             self.link(particle);
@@ -331,7 +339,7 @@ impl<const D: usize> Cells<D> {
         mut visit: impl FnMut(Link<D>, &Spot<D>, f64),
     ) {
         let own = self.spots[particle as usize].home;
-        let centre = self.seats[particle as usize].cell;
+        let centre = self.cell_of(particle);
         if 2 * rings as usize + 1 > MOST_STEPS {
             return self.for_each_around(particle, rings, visit);
         }
@@ -431,7 +439,7 @@ impl<const D: usize> Cells<D> {
     /// `particle`: how many periods away its cell is, and who it is.
     #[inline]
     fn for_each_cell(&self, particle: u32, rings: i32, mut visit: impl FnMut([i32; D], u32)) {
-        let centre = self.seats[particle as usize].cell;
+        let centre = self.cell_of(particle);
         let mut low = centre.map(|c| c - rings);
         let mut high = centre.map(|c| c + rings);
         for axis in 0..D {
@@ -469,35 +477,40 @@ impl<const D: usize> Cells<D> {
         }
     }
 
-    fn index_of(&self, seat: &Seat<D>) -> usize {
-        (0..D)
-            .map(|axis| seat.cell[axis] as usize * self.axes[axis].stride)
-            .sum()
+    /// Where its cell is in a list of all.
+    #[inline]
+    fn place_of(&self, particle: u32) -> usize {
+        self.seats[particle as usize].cell as usize
     }
 
-    fn cell_of(&self, particle: u32) -> usize {
-        self.index_of(&self.seats[particle as usize])
+    /// Its cell along each axis.
+    #[inline]
+    fn cell_of(&self, particle: u32) -> [i32; D] {
+        let mut place = self.seats[particle as usize].cell;
+        std::array::from_fn(|k| {
+            let count = self.axes[k].count as u32;
+            let cell = place % count;
+            place /= count;
+            cell as i32
+        })
     }
 
     /// A grain as the others in its cell know it.
     fn guest(&self, particle: u32) -> Guest<D> {
-        let (seat, spot) = (
-            &self.seats[particle as usize],
-            &self.spots[particle as usize],
-        );
-        let corner = Vector::from_fn(|k, _| self.axes[k].corner(seat.cell[k]));
+        let (cell, spot) = (self.cell_of(particle), &self.spots[particle as usize]);
+        let corner = Vector::from_fn(|k, _| self.axes[k].corner(cell[k]));
         self.rooms.guest(&(spot.home - corner), spot.reach)
     }
 
     fn link(&mut self, particle: u32) {
-        let (cell, guest) = (self.cell_of(particle), self.guest(particle));
+        let (cell, guest) = (self.place_of(particle), self.guest(particle));
         self.rooms.enter(cell, particle, &guest);
     }
 
     /// A grain is filed at another place in its cell, or reaches farther; false if it is
     /// not found there.
     fn relink(&mut self, particle: u32) -> bool {
-        let (cell, guest) = (self.cell_of(particle), self.guest(particle));
+        let (cell, guest) = (self.place_of(particle), self.guest(particle));
         self.rooms.shift(cell, particle, &guest)
     }
 }
@@ -511,6 +524,11 @@ struct Step {
     place: f64,
     /// The same from its corner.
     told: f32,
+}
+
+/// How many cells there may be for so many grains: few enough to be numbered.
+fn most_cells(grains: usize) -> usize {
+    (4 * grains + 4096).min(1 << 31)
 }
 
 /// The longest edge.

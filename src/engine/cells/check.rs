@@ -9,19 +9,16 @@ const ROUND: f64 = 1.0e-9;
 impl<const D: usize> Cells<D> {
     /// Whether those who look around find a grain.
     pub(in crate::engine) fn is_found(&self, particle: u32) -> bool {
-        self.rooms.holds(self.cell_of(particle), particle)
+        self.rooms.holds(self.place_of(particle), particle)
     }
 
     /// A grain has to sit in the cell of its anchor, and in that cell's room.
     pub(in crate::engine) fn check_seat(&self, particle: u32) -> Result<(), String> {
-        let seat = &self.seats[particle as usize];
+        let cell = self.cell_of(particle);
         let home = &self.spots[particle as usize].home;
         for axis in 0..D {
             let this = &self.axes[axis];
-            if !(0..this.count).contains(&seat.cell[axis]) {
-                return Err(format!("grain {particle} sits in no cell of the grid"));
-            }
-            let cell = f64::from(seat.cell[axis]);
+            let cell = f64::from(cell[axis]);
             let mut place = (home[axis] - this.origin) / this.edge;
             if this.period.is_none() {
                 place = place.clamp(0.0, f64::from(this.count) - ROUND);

@@ -4,7 +4,7 @@
 use nalgebra::SVector;
 use serde::{Deserialize, Serialize};
 
-use crate::engine::cells::{Axis, Cells, Rooms, Seat, Spot, longest};
+use crate::engine::cells::{Axis, Cells, Rooms, Seat, Spot, longest, most_cells};
 use crate::model::Boundary;
 use crate::particle::Vector;
 
@@ -18,7 +18,7 @@ pub(in crate::engine) struct SavedCells<const D: usize> {
     /// Origin, edge and number of cells along each axis.
     axes: Vec<(f64, f64, i32)>,
     /// The cell of each grain, and the periods from there to where it is stored.
-    cells: Vec<(SVector<i32, D>, SVector<i32, D>)>,
+    cells: Vec<(u32, SVector<i32, D>)>,
     /// In which order the grains that are found in it have to be seated: cell by cell.
     order: Vec<u32>,
 }
@@ -34,7 +34,7 @@ impl<const D: usize> Cells<D> {
             cells: self
                 .seats
                 .iter()
-                .map(|seat| (SVector::from(seat.cell), SVector::from(seat.turns)))
+                .map(|seat| (seat.cell, SVector::from(seat.turns)))
                 .collect(),
             order: self.rooms.all(),
         }
@@ -68,18 +68,17 @@ impl<const D: usize> Cells<D> {
             stride = stride
                 .checked_mul(along as usize)
                 // As many as a grid is ever given.
-                .filter(|cells| *cells <= 4 * count + 4096)
+                .filter(|cells| *cells <= most_cells(count))
                 .ok_or("the grid has too many cells")?;
         }
         let axes = <[Axis; D]>::try_from(axes).map_err(|_| "the grid has too few axes")?;
         let mut seats = Vec::with_capacity(count);
         for (cell, turns) in &saved.cells {
-            let outside = (0..D).any(|k| !(0..axes[k].count).contains(&cell[k]));
-            if outside || turns.iter().any(|turns| turns.abs_diff(0) > FARTHEST) {
+            if *cell as usize >= stride || turns.iter().any(|turns| turns.abs_diff(0) > FARTHEST) {
                 return Err("a grain lies in no cell");
             }
             seats.push(Seat {
-                cell: (*cell).into(),
+                cell: *cell,
                 turns: (*turns).into(),
             });
         }
