@@ -42,7 +42,7 @@ pub(super) struct Trace {
     pub(super) run: u32,
     /// When it last collided.
     pub(super) last: Time,
-    /// Collisions with static grains and walls since it last met a mobile one, or slept.
+    /// Collisions with static grains and walls since it last met a mobile one, or woke.
     pub(super) confined: u32,
     /// When the last lot of them began.
     pub(super) confined_since: Time,
@@ -158,13 +158,18 @@ impl Traces {
         }
     }
 
-    /// A grain falls asleep. What it has done at this instant is not forgotten: it may
-    /// be woken at once.
-    pub(super) fn fell_asleep(&mut self, particle: u32) {
-        if let Some(trace) = self.traces.own(particle) {
-            trace.partner = Partner::Nobody;
-            trace.confined = 0;
+    /// A grain wakes, or is set free. What it has done at this instant is not forgotten: it
+    /// may go to and fro between sleep and waking.
+    pub(super) fn woke(&mut self, particle: u32, now: Time) {
+        self.forget_partner(particle);
+        if self.is_over(&self.traces[particle], now) {
+            self.traces.clear(particle);
         }
+    }
+
+    /// Whether a grain's last collision, if there was one, was at an earlier instant.
+    fn is_over(&self, trace: &Trace, now: Time) -> bool {
+        now - trace.last > INSTANT.max(self.moment)
     }
 
     /// A grain's collisions with static obstacles are counted as from now on; nothing if
@@ -176,18 +181,11 @@ impl Traces {
         Some(lasted)
     }
 
-    /// Gives back the room of traces that say no more than that there is nothing to say.
-    pub(super) fn tidy(&mut self, now: Time) {
-        let is_void = |trace: &Trace| {
-            let over = now - trace.last > INSTANT.max(self.moment);
-            over && trace.confined == 0 && trace.partner == Partner::Nobody
-        };
-        let void: Vec<u32> = self
-            .traces
-            .each()
-            .filter(|(_, trace)| is_void(trace))
-            .map(|(particle, _)| particle)
-            .collect();
+    /// Gives back the room of the traces of sleepers, which will be void when they wake.
+    pub(super) fn tidy(&mut self, now: Time, sleeps: impl Fn(u32) -> bool) {
+        let all = self.traces.each();
+        let void = all.filter(|(particle, trace)| sleeps(*particle) && self.is_over(trace, now));
+        let void: Vec<u32> = void.map(|(particle, _)| particle).collect();
         for particle in void {
             self.traces.clear(particle);
         }

@@ -257,12 +257,11 @@ impl EventQueue {
         if self.current & (self.slots() - 1) == 0 {
             let per_slot = self.served as f64 / self.slots() as f64;
             self.served = 0;
-            let width = if per_slot > 3.0 {
-                self.width * 0.25
-            } else if per_slot < 0.25 {
-                self.width * 2.0
-            } else {
+            // About one served from each: more have to be sorted, fewer to be looked for.
+            let width = if (0.5..=3.0).contains(&per_slot) {
                 self.width
+            } else {
+                self.width * (1.2 / per_slot).clamp(0.0625, 4.0)
             };
             let slots = slots_for(self.filed[0] + self.filed[1]) as i64;
             if width != self.width || slots != self.slots() {

@@ -230,7 +230,7 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
             self.world
                 .note_change(Entry::GivenBack, particle, &before.velocity, &velocity);
         }
-        self.traces.forget_partner(particle);
+        self.traces.woke(particle, self.world.clock);
         self.tie_if_moving(particle);
         self.note_speed(particle);
         self.tell_woken(particle, &WakeCause::Event);

@@ -176,7 +176,9 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
     pub(super) fn begin_epoch(&mut self) {
         self.epoch_events = self.counts.total();
         self.world.begin_epoch(&self.model, self.world.clock);
-        self.traces.tidy(self.world.clock);
+        let bodies = &self.world.bodies;
+        let sleeps = |particle: u32| bodies[particle as usize].mode == Mode::Frozen;
+        self.traces.tidy(self.world.clock, sleeps);
         for (particle, slot) in self.slots.each() {
             self.world.glances.set_bound(particle, slot.bound());
         }

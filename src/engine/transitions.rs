@@ -82,7 +82,7 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
         self.world
             .note_change(Entry::Sleep, particle, &state.velocity, &rest);
         self.slots.clear(particle);
-        self.traces.fell_asleep(particle);
+        self.traces.forget_partner(particle);
         // Ground that moves may be faster than the grain was.
         self.note_speed(particle);
         self.schedule();
@@ -238,7 +238,7 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
         );
         self.world
             .note_change(Entry::GivenBack, particle, &before.velocity, &velocity);
-        self.traces.forget_partner(particle);
+        self.traces.woke(particle, self.world.clock);
         self.tie_if_moving(particle);
         self.note_speed(particle);
         self.counts.check_wake += 1;
