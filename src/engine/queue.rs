@@ -60,6 +60,9 @@ fn in_heap(place: u32) -> Option<usize> {
 /// all that lie beyond.
 const FEWEST: usize = 4096;
 
+/// Leaves that the lists may take besides two for each grain.
+const SPARE: usize = 4096;
+
 /// How many slots the calendar of so many entries has: a power of two.
 fn slots_for(entries: usize) -> usize {
     (2 * entries).next_power_of_two().clamp(FEWEST, 1 << 20)
@@ -226,6 +229,35 @@ impl EventQueue {
         self.filed[usize::from(list == BEYOND)] += 1;
         self.places[particle as usize] = list;
         self.lists.add(list, particle);
+        if self.lists.leaves() > 2 * self.places.len() + SPARE {
+            self.sweep();
+        }
+    }
+
+    /// Strikes ids off that stand for no entry: so many have come together since the
+    /// calendar has last moved on.
+    #[cold]
+    #[inline(never)]
+    fn sweep(&mut self) {
+        let mut swept = Lists::new(self.lists.len());
+        for list in 0..self.lists.len() as u32 {
+            let mut kept = Vec::new();
+            let mut page = self.lists.take(list);
+            while let Some(few) = self.lists.next(&mut page) {
+                for &particle in few.ids() {
+                    // None is kept twice.
+                    if self.is_on(particle, list) {
+                        self.places[particle as usize] = NOWHERE;
+                        kept.push(particle);
+                    }
+                }
+            }
+            for particle in kept {
+                self.places[particle as usize] = list;
+                swept.add(list, particle);
+            }
+        }
+        self.lists = swept;
     }
 
     fn take_out(&mut self, particle: u32) {

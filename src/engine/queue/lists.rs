@@ -55,6 +55,12 @@ impl Lists {
         self.heads.len()
     }
 
+    /// How many leaves there are, in use or not.
+    #[inline]
+    pub(super) fn leaves(&self) -> usize {
+        self.leaves.len()
+    }
+
     #[inline]
     pub(super) fn add(&mut self, list: u32, id: u32) {
         let head = self.heads[list as usize];

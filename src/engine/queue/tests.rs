@@ -86,6 +86,34 @@ fn equal_times_go_by_kind_then_ids() {
     assert_eq!(order, [2, 3, 1, 0]);
 }
 
+/// The clock may stand still while entries far ahead are set anew again and again.
+#[test]
+fn entries_set_anew_take_no_more_room() {
+    let mut queue = EventQueue::new(2, Time::ZERO);
+    let near = [key(1.0e-6, 0), key(0.0, 1)];
+    for (particle, key) in (0..).zip(near) {
+        queue.push_empty();
+        queue.set(particle, key);
+    }
+    for round in 0..200_000 {
+        let slot = 1 + round % 1000;
+        queue.set(0, key(1.0e-3 * f64::from(slot), 0));
+        if round % 3 == 0 {
+            queue.set(0, near[0]);
+        }
+    }
+    assert!(queue.lists.leaves() <= 2 * 2 + SPARE + 1);
+    let keys = [key(0.25, 0), near[1]];
+    queue.set(0, keys[0]);
+    let known = |particle: u32| keys[particle as usize];
+    assert_eq!(queue.peek(known), Some((1, keys[1])));
+    queue.set(1, key(f64::INFINITY, 1));
+    assert_eq!(queue.check_numbers(), Ok(()));
+    assert_eq!(queue.peek(known), Some((0, keys[0])));
+    queue.set(0, key(f64::INFINITY, 0));
+    assert_eq!(queue.peek(known), None);
+}
+
 #[test]
 fn an_entry_out_of_order_is_seen() {
     let mut queue = EventQueue::new(2, Time::ZERO);
