@@ -16,6 +16,8 @@
 #[cfg(test)]
 mod tests;
 
+use std::cmp::Ordering;
+
 use serde::{Deserialize, Serialize};
 
 use crate::engine::body::{Body, World};
@@ -191,17 +193,13 @@ impl<const D: usize> World<D> {
     /// Whether those who are aloft and everybody else are where they have to be.
     pub(super) fn check_aloft(&self, particle: u32) -> Result<(), String> {
         if self.is_aloft(particle) {
-            let place = self
-                .aloft
-                .waiting
-                .iter()
-                .rposition(|(_, id)| *id == particle);
-            let Some(place) = place else {
-                return Err(format!("grain {particle} moves without a list"));
-            };
-            let height = self.height(particle);
-            if self.aloft.waiting[place].0 != height {
-                return Err(format!("grain {particle} is not at height {height}"));
+            let own = (self.height(particle), particle);
+            let waiting = &self.aloft.waiting;
+            if waiting.binary_search_by(|it| from_above(it, &own)).is_err() {
+                return Err(format!(
+                    "grain {particle} moves without a list, and does not wait at {} d",
+                    own.0
+                ));
             }
             if self.near.is_found(particle) {
                 return Err(format!("grain {particle} is aloft and in the grid"));
@@ -298,10 +296,15 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
         for &(_, particle) in &waiting {
             lifted[particle as usize] = true;
         }
-        for (particle, lifted) in (0..).zip(lifted) {
+        for (particle, lifted) in (0..).zip(&lifted) {
             if !lifted && self.world.bodies[particle as usize].mode == Mode::Falling {
                 self.tie_if_moving(particle);
             }
+        }
+        if !waiting.is_empty() {
+            // Not before: up to here the grid tells who overlaps.
+            let near = &mut self.world.near;
+            near.leave_out(|particle| lifted[particle as usize]);
         }
         self.world.aloft.wait(waiting);
         self.expect_landing();
@@ -402,9 +405,14 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
     }
 }
 
+/// The order in which those aloft wait: the lowest comes last.
+fn from_above(one: &(f64, u32), other: &(f64, u32)) -> Ordering {
+    other.0.total_cmp(&one.0).then(other.1.cmp(&one.1))
+}
+
 impl<const D: usize> Aloft<D> {
     fn wait(&mut self, mut falling: Vec<(f64, u32)>) {
-        falling.sort_by(|one, other| other.0.total_cmp(&one.0).then(other.1.cmp(&one.1)));
+        falling.sort_by(from_above);
         self.waiting = falling;
     }
 }

@@ -126,14 +126,8 @@ pub(super) struct Found<const D: usize> {
 
 impl<const D: usize> Cells<D> {
     /// A grid for grains at these positions; grains in cells that are not
-    /// neighbours are farther apart than `reach`. Those of them that are not `found`
-    /// in it yet are as soon as they are filed anew.
-    pub(super) fn new<B: Boundary<D>>(
-        boundary: &B,
-        positions: &[Vector<D>],
-        reach: f64,
-        found: impl Fn(u32) -> bool,
-    ) -> Self {
+    /// neighbours are farther apart than `reach`.
+    pub(super) fn new<B: Boundary<D>>(boundary: &B, positions: &[Vector<D>], reach: f64) -> Self {
         let (low, span) = extents(boundary, positions, reach);
         // Not many more cells than grains, however thin the gas.
         let most_cells = most_cells(positions.len()) as f64;
@@ -163,13 +157,22 @@ impl<const D: usize> Cells<D> {
             spots: Vec::with_capacity(positions.len()),
             seats: Vec::with_capacity(positions.len()),
         };
-        for (particle, position) in (0..).zip(positions) {
-            cells.seat(position);
-            if found(particle) {
-                cells.link(particle);
-            }
+        for position in positions {
+            cells.add(position);
         }
         cells
+    }
+
+    /// Lets nobody find some of the grains, up to when they are filed anew; their room
+    /// is given back.
+    pub(super) fn leave_out(&mut self, left_out: impl Fn(u32) -> bool) {
+        let all = self.rooms.all();
+        self.rooms = self.rooms.emptied();
+        for particle in all {
+            if !left_out(particle) {
+                self.link(particle);
+            }
+        }
     }
 
     /// Where a grain is filed.
@@ -217,14 +220,10 @@ impl<const D: usize> Cells<D> {
 
     /// Seats one more grain.
     pub(super) fn add(&mut self, position: &Vector<D>) {
-        self.seat(position);
-        self.link(self.seats.len() as u32 - 1);
-    }
-
-    fn seat(&mut self, position: &Vector<D>) {
         let (seat, home) = self.seat_for(position);
         self.seats.push(seat);
         self.spots.push(Spot { home, reach: 0.0 });
+        self.link(self.seats.len() as u32 - 1);
     }
 
     /// The cell for a position, and the image of the position in it.

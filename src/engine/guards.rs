@@ -2,7 +2,6 @@
 //! with whom last.
 
 use std::hint::black_box;
-
 use std::ops::Index;
 
 use serde::{Deserialize, Serialize};
@@ -49,7 +48,7 @@ pub(super) struct Trace {
 }
 
 impl Trace {
-    /// Of a grain that has not collided for long.
+    /// Of a grain of which nothing is remembered.
     const NONE: Trace = Trace {
         partner: Partner::Nobody,
         run: 0,
@@ -108,7 +107,7 @@ impl SavedTraces {
         }
         let held = if self.hold > 0.0 { count } else { 0 };
         if self.holds.len() != held {
-            return Some("their number is not that of the grains");
+            return Some("the number of holds is not that of the grains");
         }
         if self.holds.iter().any(|holds| holds.next >= HELD) {
             return Some("a hold is out of place");

@@ -80,18 +80,12 @@ pub(super) struct Neighbours<const D: usize> {
 
 impl<const D: usize> Neighbours<D> {
     /// Without lists yet, for grains at these positions whose centres touch at
-    /// no more than `largest`. Nobody finds those that are not to be `found`, before they
-    /// are tied or released.
-    pub(super) fn new<B: Boundary<D>>(
-        boundary: &B,
-        positions: &[Vector<D>],
-        largest: f64,
-        found: impl Fn(u32) -> bool,
-    ) -> Self {
+    /// no more than `largest`.
+    pub(super) fn new<B: Boundary<D>>(boundary: &B, positions: &[Vector<D>], largest: f64) -> Self {
         let long = leash_for(Cells::crowding(boundary, positions, largest), D);
         // Everybody is found in adjacent cells.
         let reach = (1.0 + 2.0 * long) * largest;
-        let cells = Cells::new(boundary, positions, reach, found);
+        let cells = Cells::new(boundary, positions, reach);
         Neighbours {
             rings: rings(&cells, reach),
             cells,
@@ -104,6 +98,11 @@ impl<const D: usize> Neighbours<D> {
             fresh: Vec::new(),
             newcomers: Vec::new(),
         }
+    }
+
+    /// Lets nobody find some of the grains, before they are tied or released.
+    pub(super) fn leave_out(&mut self, left_out: impl Fn(u32) -> bool) {
+        self.cells.leave_out(left_out);
     }
 
     /// Adds a grain at rest at a position.
@@ -256,8 +255,8 @@ impl<const D: usize> Neighbours<D> {
     }
 
     /// Ties a moving grain to an anchor a little ahead of it and makes its list
-    /// anew. It meets somebody in `wait`, in √(d/g); `radius` is its largest as long as
-    /// this grid serves, in d.
+    /// anew. Something happens to it in `wait`, in √(d/g); `radius` is its largest as long
+    /// as this grid serves, in d.
     pub(super) fn tie(
         &mut self,
         particle: u32,
@@ -277,7 +276,7 @@ impl<const D: usize> Neighbours<D> {
             let tie = self.ties.make(particle);
             tie.leash = if tie.lonely { self.longest } else { short };
             let leash = tie.leash;
-            // Where it meets somebody, but no more than half a unit of time ahead and
+            // Where something happens to it, but no more than half a unit of time ahead and
             // well within the leash.
             let ahead = if speed > 0.0 {
                 f64::min(wait.min(0.5), 0.75 * leash / speed)

@@ -80,7 +80,7 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
         }
         check_periods(&model, largest * scale)?;
         let count = particles.len();
-        let near = Neighbours::new(model.boundary(), &[], 1.0, |_| true);
+        let near = Neighbours::new(model.boundary(), &[], 1.0);
         let mut simulation = Simulation {
             settings,
             world: World {
@@ -236,6 +236,7 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
         self.tell_woken(particle, &WakeCause::Event);
         self.tell_dependants(particle, true);
         self.predict(particle);
+        self.expect_landing();
         Ok(())
     }
 

@@ -156,9 +156,7 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
                 flight.position(now - since)
             })
             .collect();
-        let bodies = &self.world.bodies;
-        let found = |particle: u32| bodies[particle as usize].mode != Mode::Falling;
-        self.world.near = Neighbours::new(self.model.boundary(), &positions, largest, found);
+        self.world.near = Neighbours::new(self.model.boundary(), &positions, largest);
         let scale = self.listed_scale();
         for particle in 0..count {
             let radius = scale * self.world.bodies[particle as usize].radius;

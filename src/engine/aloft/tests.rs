@@ -5,9 +5,10 @@ use crate::collide::Restitution;
 use crate::dynamics::UniformGravity;
 use crate::engine::settings::{Limits, StopReason};
 use crate::engine::simulation::Simulation;
+use crate::error::SetupError;
 use crate::model::Parts;
 use crate::observe::TrajectoryHash;
-use crate::particle::{Mode, Particle, Vector};
+use crate::particle::{Mode, Particle, ParticleId, Vector};
 use crate::policy::SlowDescent;
 use crate::predict::Polynomial;
 use crate::setup::{Rain, seeded};
@@ -69,6 +70,50 @@ fn fountain<const D: usize>(seed: u64, aslant: f64, rising: f64) -> Simulation<M
         boundary: Cuboid::new(sides).unwrap(),
     };
     Simulation::new(model, grains).unwrap()
+}
+
+/// Grains of a rain that overlap are refused, though nobody looks for them later; and so
+/// is one that is put among those aloft.
+#[test]
+fn a_rain_that_overlaps_is_refused() {
+    let model = || fountain::<3>(1, 0.0, 0.0).model;
+    let mut rain: Vec<_> = (0..40)
+        .map(|place| {
+            let height = 5.0 + 1.5 * f64::from(place);
+            let position = Vector::<3>::new(1.0, 1.0, height);
+            Particle::new(position, Vector::<3>::new(0.0, 0.0, -2.5)).with_mode(Mode::Falling)
+        })
+        .collect();
+    let floor =
+        Particle::new(Vector::<3>::new(3.0, 3.0, 0.0), Vector::zeros()).with_mode(Mode::Fixed);
+    rain.push(floor);
+    let mut simulation = Simulation::new(model(), rain.clone()).unwrap();
+    assert_eq!(simulation.world.aloft.waiting.len(), 40);
+    assert!(matches!(
+        simulation.insert(rain[20]),
+        Err(SetupError::Overlap { .. })
+    ));
+    rain[20].position[2] += 0.75;
+    assert!(matches!(
+        Simulation::new(model(), rain),
+        Err(SetupError::Overlap { .. })
+    ));
+}
+
+/// A grain that is set free high up makes those aloft land sooner.
+#[test]
+fn one_set_free_among_a_rain_is_seen() {
+    let mut simulation = fountain::<3>(3, 0.0, 0.0);
+    let fixed = (0..)
+        .map(ParticleId)
+        .find(|id| simulation.particle(*id).mode == Mode::Fixed)
+        .unwrap();
+    simulation
+        .set_free(fixed, Vector::<3>::new(0.0, 0.0, 0.1))
+        .unwrap();
+    assert_eq!(simulation.check_everything(), Ok(()));
+    let saved = simulation.save();
+    assert!(Simulation::restore(simulation.model, saved).is_ok());
 }
 
 /// Gives everybody a list.

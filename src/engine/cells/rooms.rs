@@ -73,6 +73,11 @@ impl<const D: usize> Rooms<D> {
         }
     }
 
+    /// As many cells of the same kind, with nobody in them.
+    pub(super) fn emptied(&self) -> Self {
+        Rooms::new(self.heads.len(), self.edge)
+    }
+
     /// A place from the corner of a cell; what is too far away to be told is near
     /// everybody.
     #[inline]
