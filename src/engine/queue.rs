@@ -241,18 +241,8 @@ impl EventQueue {
     fn sweep(&mut self) {
         let mut swept = Lists::new(self.lists.len());
         for list in 0..self.lists.len() as u32 {
-            let mut kept = Vec::new();
-            let mut page = self.lists.take(list);
-            while let Some(few) = self.lists.next(&mut page) {
-                for &particle in few.ids() {
-                    // None is kept twice.
-                    if self.is_on(particle, list) {
-                        self.places[particle as usize] = NOWHERE;
-                        kept.push(particle);
-                    }
-                }
-            }
-            for particle in kept {
+            for particle in self.unfile(list) {
+                self.filed[usize::from(list == BEYOND)] += 1;
                 self.places[particle as usize] = list;
                 swept.add(list, particle);
             }
@@ -300,7 +290,8 @@ impl EventQueue {
                 self.rebuild(width, key);
                 return true;
             }
-            for Entry { key, particle } in self.unfile(BEYOND, key) {
+            for particle in self.unfile(BEYOND) {
+                let key = key(particle);
                 self.file(particle, self.slot_of(key.time), key);
             }
         }
@@ -323,29 +314,29 @@ impl EventQueue {
     /// Files everything anew, from the earliest entry on; the heap is empty.
     fn rebuild(&mut self, width: f64, key: &impl Fn(u32) -> Key) {
         let lists = 0..self.lists.len() as u32;
-        let all: Vec<Entry> = lists.flat_map(|list| self.unfile(list, key)).collect();
-        if let Some(start) = all.iter().map(|entry| entry.key.time).min() {
+        let all: Vec<u32> = lists.flat_map(|list| self.unfile(list)).collect();
+        if let Some(start) = all.iter().map(|particle| key(*particle).time).min() {
             self.origin = start;
         }
         self.width = width.clamp(1.0e-14, 1.0e6);
         self.per_time = 1.0 / self.width;
         self.current = 0;
         self.lists = Lists::new(slots_for(all.len()) + 1);
-        for Entry { key, particle } in all {
+        for particle in all {
+            let key = key(particle);
             self.file(particle, self.slot_of(key.time), key);
         }
     }
 
-    /// Takes all entries from a list.
-    fn unfile(&mut self, list: u32, key: &impl Fn(u32) -> Key) -> Vec<Entry> {
+    /// Takes all entries from a list: whose they are, each once.
+    fn unfile(&mut self, list: u32) -> Vec<u32> {
         let mut all = Vec::new();
         let mut page = self.lists.take(list);
         while let Some(few) = self.lists.next(&mut page) {
             for &particle in few.ids() {
                 if self.is_on(particle, list) {
                     self.take_out(particle);
-                    let key = key(particle);
-                    all.push(Entry { key, particle });
+                    all.push(particle);
                 }
             }
         }

@@ -103,14 +103,19 @@ fn a_rain_that_overlaps_is_refused() {
 /// A grain that is set free high up makes those aloft land sooner.
 #[test]
 fn one_set_free_among_a_rain_is_seen() {
-    let mut simulation = fountain::<3>(3, 0.0, 0.0);
-    let fixed = (0..)
-        .map(ParticleId)
-        .find(|id| simulation.particle(*id).mode == Mode::Fixed)
-        .unwrap();
+    let calm = fountain::<3>(3, 0.0, 0.0);
+    let mut grains = calm.snapshot();
+    let fixed = ParticleId(grains.len() as u32);
+    // Higher than all others, and not far below the rain.
+    let place = Vector::<3>::new(2.5, 2.5, 1.6);
+    grains.push(Particle::new(place, Vector::zeros()).with_mode(Mode::Fixed));
+    let mut simulation = Simulation::new(calm.model, grains).unwrap();
+    assert!(!simulation.world.aloft.is_empty());
+    let ceiling = simulation.world.aloft.ceiling;
     simulation
         .set_free(fixed, Vector::<3>::new(0.0, 0.0, 0.1))
         .unwrap();
+    assert!(simulation.world.aloft.ceiling > ceiling);
     assert_eq!(simulation.check_everything(), Ok(()));
     let saved = simulation.save();
     assert!(Simulation::restore(simulation.model, saved).is_ok());
