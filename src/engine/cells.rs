@@ -89,8 +89,9 @@ impl<const D: usize> Found<D> {
     }
 }
 
-/// Where a grain is filed.
+/// Where a grain is filed: within one cache line.
 #[derive(Clone, Copy, Debug)]
+#[repr(align(32))]
 pub(super) struct Spot<const D: usize> {
     /// Its anchor, in the image that lies in the grid; in d.
     pub(super) home: Vector<D>,

@@ -109,6 +109,12 @@ impl<const D: usize> Glances<D> {
         }
     }
 
+    /// Whether a grain that is known is predicted anew before a time.
+    #[inline]
+    pub(super) fn is_bound_before(&self, particle: u32, time: Time) -> bool {
+        time - self.epoch > self.all[particle].bound
+    }
+
     /// A time from the epoch, or a little more.
     #[inline]
     fn offset(&self, time: Time) -> f64 {

@@ -142,7 +142,8 @@ impl Traces {
     /// Reads a grain's trace, to have it at hand.
     #[inline]
     pub(super) fn touch(&self, particle: u32) {
-        black_box(self.traces[particle].run);
+        let trace = &self.traces[particle];
+        black_box((trace.run, trace.confined));
     }
 
     pub(super) fn forget_last(&mut self) {

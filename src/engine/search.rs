@@ -122,7 +122,8 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
         let Some(time) = self.pair_contact(particle, other.particle, other.turns, until) else {
             return false;
         };
-        if time > self.slots[other.particle].bound() {
+        // Later than its own bound, the other finds it anyway.
+        if self.is_predicted_before(other.particle, time) {
             return false;
         }
         let partner = Partner::Particle(other.particle);
@@ -135,6 +136,18 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
         slot.partner = partner;
         slot.partner_stamp = partner_stamp;
         true
+    }
+
+    /// Whether a grain is certain to be predicted anew before a time.
+    #[inline]
+    fn is_predicted_before(&self, particle: u32, time: Time) -> bool {
+        let glances = &self.world.glances;
+        // Likely to be at hand, other than its slot.
+        if glances.is_unknown(particle) {
+            time > self.slots[particle].bound()
+        } else {
+            glances.is_bound_before(particle, time)
+        }
     }
 
     /// Notes a grain's contact with a wall if it comes first; true if it did.

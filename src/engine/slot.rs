@@ -14,8 +14,9 @@ pub(super) enum Partner {
     Wall(WallId),
 }
 
-/// What lies ahead of a grain.
+/// What lies ahead of a grain: one cache line.
 #[derive(Clone, Copy, Debug, Serialize, Deserialize)]
+#[repr(align(64))]
 pub(super) struct Slot {
     /// Its next contact, as far as it has to know.
     pub(super) contact: Time,
