@@ -84,7 +84,6 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
         black_box(self.slots[particle].partner_stamp);
         black_box(self.world.bodies[place].position[0]);
         black_box(self.world.bodies[place].stamp);
-        black_box(self.world.masses[place]);
         self.world.glances.touch(particle);
         self.world.near.touch(particle);
         self.traces.touch(particle);

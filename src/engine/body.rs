@@ -22,6 +22,8 @@ pub(super) struct Body<const D: usize> {
     pub(super) since: Time,
     /// Radius at t = 0, in d.
     pub(super) radius: f64,
+    /// In m.
+    pub(super) mass: f64,
     pub(super) mode: Mode,
     /// Static and not moving along.
     pub(super) still: bool,
@@ -34,7 +36,6 @@ pub(super) struct Body<const D: usize> {
 #[derive(Clone, Debug)]
 pub(super) struct World<const D: usize> {
     pub(super) bodies: Vec<Body<D>>,
-    pub(super) masses: Vec<f64>,
     pub(super) near: Neighbours<D>,
     pub(super) clock: Time,
     pub(super) modes: ModeCounts,
@@ -87,7 +88,7 @@ impl<const D: usize> World<D> {
         before: &Vector<D>,
         after: &Vector<D>,
     ) {
-        let mass = self.masses[particle as usize];
+        let mass = self.bodies[particle as usize].mass;
         self.ledger.add(entry, gain(mass, before, after));
     }
 
@@ -122,7 +123,7 @@ impl<const D: usize> World<D> {
             position: flight.position(after),
             velocity: flight.velocity(after),
             diameter: 2.0 * body.radius * scale_at::<M, D>(model, self.clock),
-            mass: self.masses[particle as usize],
+            mass: body.mass,
             mode: body.mode,
         }
     }
@@ -143,7 +144,7 @@ impl<const D: usize> World<D> {
         }
         let body = &mut self.bodies[particle as usize];
         if body.mode == Mode::Falling {
-            let weight = model.dynamics().gravity(self.clock) * self.masses[particle as usize];
+            let weight = model.dynamics().gravity(self.clock) * body.mass;
             let lost = weight.dot(&(body.position - position));
             self.ledger.add(Entry::Fall, lost);
         }
@@ -168,7 +169,7 @@ impl<const D: usize> World<D> {
                 body.position[axis] = x - turns * period.length;
                 let gravity = model.dynamics().gravity(self.clock)[axis];
                 if gravity != 0.0 && mode != Mode::Fixed {
-                    let weight = self.masses[particle as usize] * gravity;
+                    let weight = body.mass * gravity;
                     let gained = weight * (x - body.position[axis]);
                     self.ledger.add(Entry::Crossing, gained);
                 }

@@ -369,7 +369,7 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
                     other: None,
                     wall: None,
                     impact_speed: 0.0,
-                    impulse: change * self.world.masses[particle as usize],
+                    impulse: change * self.world.bodies[particle as usize].mass,
                     velocity: self.world.bodies[particle as usize].velocity,
                     other_velocity: Vector::zeros(),
                     elastic: false,

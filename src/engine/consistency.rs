@@ -82,7 +82,6 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
     pub(super) fn check_everything(&self) -> Result<(), String> {
         let count = self.world.bodies.len();
         let lengths = [
-            ("masses", self.world.masses.len()),
             ("memories", self.memories.len()),
             ("spins", self.spins.len()),
             ("slots", self.slots.len()),

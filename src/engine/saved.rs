@@ -46,7 +46,6 @@ pub struct Saved<R, E, S, const D: usize> {
     settings: Settings,
     clock: Time,
     bodies: Vec<Body<D>>,
-    masses: Vec<f64>,
     memories: Vec<R>,
     spins: Vec<S>,
     /// Of those who have something ahead of them, in order.
@@ -104,7 +103,6 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
             settings: self.settings,
             clock: self.world.clock,
             bodies: self.world.bodies.clone(),
-            masses: self.world.masses.clone(),
             memories: self.memories.clone(),
             spins: self.spins.clone(),
             slots: self.slots.save(),
@@ -160,7 +158,6 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
             settings: saved.settings,
             world: World {
                 bodies,
-                masses: saved.masses,
                 near,
                 clock: saved.clock,
                 modes,
@@ -221,8 +218,8 @@ impl<R, E, S, const D: usize> Saved<R, E, S, D> {
         if count > i32::MAX as usize {
             return Err(wrong("more grains than can be named"));
         }
-        let lengths = [self.masses.len(), self.memories.len(), self.spins.len()];
-        if lengths != [count; 3] {
+        let lengths = [self.memories.len(), self.spins.len()];
+        if lengths != [count; 2] {
             return Err(wrong("something is there for some grains only"));
         }
         if !self.clock.is_finite() || self.clock < self.settings.start {
@@ -303,7 +300,7 @@ impl<R, E, S, const D: usize> Saved<R, E, S, D> {
 
     /// What is wrong with a grain, if anything.
     fn misfit<M: Model<D>>(&self, id: usize, model: &M) -> Option<&'static str> {
-        let (body, mass) = (&self.bodies[id], self.masses[id]);
+        let body = &self.bodies[id];
         let is_number = |x: &f64| x.abs() <= LARGEST;
         if !body.position.iter().chain(&body.velocity).all(is_number) {
             return Some("is nowhere");
@@ -317,6 +314,6 @@ impl<R, E, S, const D: usize> Saved<R, E, S, D> {
             }
         }
         let is_amount = |number: f64| number > 0.0 && number.is_finite();
-        (!is_amount(body.radius) || !is_amount(mass)).then_some("has no size or mass")
+        (!is_amount(body.radius) || !is_amount(body.mass)).then_some("has no size or mass")
     }
 }

@@ -85,7 +85,6 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
             settings,
             world: World {
                 bodies: Vec::with_capacity(count),
-                masses: Vec::with_capacity(count),
                 near,
                 clock: settings.start,
                 modes: ModeCounts::default(),
@@ -248,6 +247,7 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
             velocity: particle.velocity,
             since: self.world.clock,
             radius: 0.5 * particle.diameter / scale,
+            mass: particle.mass,
             mode: particle.mode,
             still: false,
             stamp: 0,
@@ -256,7 +256,6 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
         let at_rest = self.world.flight(&self.model, index).is_at_rest();
         self.world.bodies[index as usize].still = particle.mode.is_static() && at_rest;
         self.world.keep_blur(&self.model, index);
-        self.world.masses.push(particle.mass);
         *self.world.modes.of(particle.mode) += 1;
         self.traces.add();
         self.queue.push_empty();
@@ -267,7 +266,6 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
         if let Some(body) = self.world.bodies.pop() {
             *self.world.modes.of(body.mode) -= 1;
         }
-        self.world.masses.pop();
         self.world.near.forget_last();
         self.world.glances.forget_last();
         self.traces.forget_last();
