@@ -8,11 +8,12 @@
 //! after the other. Nothing is kept of it, so it changes nothing but the time taken.
 
 use std::hint::black_box;
+use std::mem::needs_drop;
 
 use crate::engine::body::World;
 use crate::engine::simulation::Simulation;
 use crate::engine::slot::Partner;
-use crate::model::Model;
+use crate::model::{MemoryOf, Model};
 
 /// Smaller systems are near anyway.
 const MANY: usize = 20_000;
@@ -70,6 +71,9 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
                 self.world.touch_neighbours(particle);
             }
             _ => {
+                if self.world.near.has_bed(particle) {
+                    self.world.touch_movers(particle);
+                }
                 if let Some(partner) = partner() {
                     self.world.touch_neighbours(partner);
                 }
@@ -84,6 +88,10 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
         black_box(self.slots[particle].partner_stamp);
         black_box(self.world.bodies[place].position[0]);
         black_box(self.world.bodies[place].stamp);
+        if const { !needs_drop::<MemoryOf<M, D>>() } {
+            // Owns nothing, so a copy costs no more than reading it.
+            black_box(self.memories[place].clone());
+        }
         self.world.glances.touch(particle);
         self.world.near.touch(particle);
         self.traces.touch(particle);
@@ -92,15 +100,20 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
 }
 
 impl<const D: usize> World<D> {
-    /// How those on a grain's list are seen.
+    /// A grain's bed, or how those on its list are seen if it has none.
     #[inline]
     fn touch_neighbours(&self, particle: u32) {
-        let (bed, movers) = self.near.bed(particle);
-        for link in movers {
-            self.glances.touch(link.particle());
+        match self.near.bed(particle) {
+            (Some(bed), _) => bed.touch(),
+            (None, _) => self.touch_movers(particle),
         }
-        if let Some(bed) = bed {
-            bed.touch();
+    }
+
+    /// How those on a grain's list who move are seen.
+    #[inline]
+    fn touch_movers(&self, particle: u32) {
+        for link in self.near.bed(particle).1 {
+            self.glances.touch(link.particle());
         }
     }
 }

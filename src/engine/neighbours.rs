@@ -140,12 +140,13 @@ impl<const D: usize> Neighbours<D> {
     #[inline]
     pub(super) fn touch_list(&self, particle: u32) {
         let tie = &self.ties[particle];
+        if let Some(bed) = &tie.bed {
+            black_box((bed.resting.len(), bed.still.len(), bed.movers().len()));
+            return;
+        }
         // A cache line holds eight.
         for few in tie.list.chunks(8) {
             black_box(few[0]);
-        }
-        if let Some(bed) = &tie.bed {
-            black_box(bed.resting.len());
         }
     }
 
@@ -223,6 +224,12 @@ impl<const D: usize> Neighbours<D> {
     /// Who has a list, in order.
     pub(super) fn tied(&self) -> impl Iterator<Item = u32> {
         self.ties.each().map(|(particle, _)| particle)
+    }
+
+    /// Whether somebody lies still on the list of a grain.
+    #[inline]
+    pub(super) fn has_bed(&self, particle: u32) -> bool {
+        self.ties[particle].bed.is_some()
     }
 
     /// Whether a grain has a list.

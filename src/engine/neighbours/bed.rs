@@ -72,14 +72,23 @@ impl<const D: usize> Bed<D> {
 }
 
 impl<const D: usize> Bed<D> {
+    /// Who moves.
+    #[inline]
+    pub(in crate::engine) fn movers(&self) -> &[Link<D>] {
+        &self.movers
+    }
+
     /// Reads it, to have it at hand.
     #[inline]
     pub(in crate::engine) fn touch(&self) {
         for few in &self.resting {
-            black_box(few.distances[0]);
+            for places in &few.places {
+                black_box(places[0]);
+            }
+            black_box(few.distances);
         }
-        for link in self.still.chunks(8) {
-            black_box(link[0]);
+        for few in self.still.chunks(8).chain(self.movers.chunks(8)) {
+            black_box(few[0]);
         }
     }
 }
