@@ -121,6 +121,17 @@ fn one_set_free_among_a_rain_is_seen() {
     assert!(Simulation::restore(simulation.model, saved).is_ok());
 }
 
+#[test]
+fn one_aloft_that_can_be_found_is_seen() {
+    let mut simulation = fountain::<3>(1, 0.0, 0.0);
+    assert_eq!(simulation.check_everything(), Ok(()));
+    let (_, lowest) = *simulation.world.aloft.waiting.last().unwrap();
+    let position = simulation.world.bodies[lowest as usize].position;
+    simulation.world.near.release(lowest, &position, 0.5);
+    let fault = simulation.check_everything().unwrap_err();
+    assert!(fault.contains("is aloft and in the grid"), "{fault}");
+}
+
 /// Gives everybody a list.
 fn ground<const D: usize>(simulation: &mut Simulation<Model<D>, D>) {
     while let Some((_, lowest)) = simulation.world.aloft.waiting.pop() {

@@ -41,8 +41,10 @@ impl EventQueue {
             }
             return Ok(());
         }
-        // What was beyond the calendar may lie within it by now.
-        if slot <= self.current || (place != self.list_of(slot) && place != BEYOND) {
+        // What was beyond the calendar may lie within it by now, but not before its next turn.
+        let slots = self.slots();
+        let beyond = place == BEYOND && slot >= (self.current / slots + 1) * slots;
+        if slot <= self.current || (place != self.list_of(slot) && !beyond) {
             return Err(format!(
                 "grain {particle} for slot {slot} is filed in {place}, the calendar being at {}",
                 self.current

@@ -128,3 +128,31 @@ fn an_entry_out_of_order_is_seen() {
     let fault = queue.check_entry(1, keys[1]).unwrap_err();
     assert!(fault.contains("comes before 0"), "{fault}");
 }
+
+#[test]
+fn entries_filed_elsewhere_are_seen() {
+    let mut sound = EventQueue::new(2, Time::ZERO);
+    let later = key(0.5, 1);
+    for (particle, key) in (0..).zip([key(0.0, 0), later]) {
+        sound.push_empty();
+        sound.set(particle, key);
+    }
+    assert_eq!(sound.check_numbers(), Ok(()));
+    assert_eq!(sound.check_entry(1, later), Ok(()));
+    let see = |check: Result<(), String>, name: &str| {
+        let fault = check.unwrap_err();
+        assert!(fault.contains(name), "{fault}");
+    };
+
+    let mut miscounted = sound.clone();
+    miscounted.filed[0] += 1;
+    see(miscounted.check_numbers(), "entries are filed, not");
+
+    let mut misplaced = sound.clone();
+    misplaced.places[1] = BEYOND;
+    see(misplaced.check_entry(1, later), "is filed in");
+
+    let mut lost = sound;
+    lost.lists = Lists::new(lost.lists.len());
+    see(lost.check_entry(1, later), "is not on list");
+}
