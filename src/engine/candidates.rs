@@ -21,6 +21,13 @@ pub(super) struct Candidate<const D: usize> {
 }
 
 impl<const D: usize> World<D> {
+    /// Divides the list of a grain into those at rest and those that move.
+    #[inline]
+    fn make_bed(&mut self, particle: u32) {
+        let anybody_rests = self.modes.frozen + self.modes.fixed > 0;
+        self.near.make_bed(particle, anybody_rests, &self.bodies);
+    }
+
     /// Those among these that the onlooker may meet soon.
     #[inline(always)]
     fn look(&self, own: &Onlooker<D>, links: &[Link<D>], candidates: &mut Vec<Candidate<D>>) {
@@ -54,7 +61,7 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
     /// Looks at those alone whom a grain's new list names and the one before did
     /// not: what is known of the others holds. False if there is more to look at.
     pub(super) fn meet_newcomers(&mut self, particle: u32) -> bool {
-        self.world.near.make_bed(particle, &self.world.bodies);
+        self.world.make_bed(particle);
         let (bed, _) = self.world.near.bed(particle);
         let known = self.slots[particle].contact;
         let Some(onlooker) = self.world.onlooker(particle, known) else {
@@ -146,7 +153,7 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
         back: Option<(Link<D>, f64)>,
         candidates: &mut Vec<Candidate<D>>,
     ) {
-        self.world.near.make_bed(particle, &self.world.bodies);
+        self.world.make_bed(particle);
         let (bed, movers) = self.world.near.bed(particle);
         let onlooker = self.world.onlooker(particle, until);
         if (bed.is_some() || onlooker.is_none())

@@ -55,6 +55,17 @@ impl Axis {
         self.period.map_or(0.0, |period| period.length)
     }
 
+    /// The cell of a place, counted on beyond the ends of a period.
+    #[inline]
+    fn cell_at(&self, along: f64) -> i32 {
+        let place = ((along - self.origin) * self.per_edge).floor();
+        if self.period.is_none() {
+            place.clamp(0.0, f64::from(self.count - 1)) as i32
+        } else {
+            place as i32
+        }
+    }
+
     /// Where a cell begins.
     #[inline]
     fn corner(&self, cell: i32) -> f64 {
@@ -237,13 +248,12 @@ impl<const D: usize> Cells<D> {
         };
         for k in 0..D {
             let axis = &self.axes[k];
-            let place = ((position[k] - axis.origin) * axis.per_edge).floor();
+            let cell = axis.cell_at(position[k]);
             if axis.period.is_none() {
-                let cell = place.clamp(0.0, f64::from(axis.count - 1)) as i32;
                 seat.cell += axis.step(cell);
                 continue;
             }
-            let (cell, turns) = axis.wrapped(place as i32);
+            let (cell, turns) = axis.wrapped(cell);
             seat.cell += axis.step(cell);
             seat.turns[k] = turns;
             if turns != 0 {
@@ -326,44 +336,60 @@ impl<const D: usize> Cells<D> {
         }
     }
 
-    /// Calls `visit` for every grain within so many rings of cells whose place is
-    /// nearer to that of `particle` than both `reach` together with its own, and
-    /// perhaps for some that are farther away: with where it is filed, and the
-    /// squared distance. Itself is left out.
+    /// From where a grain is filed to where another is, in the image of a link, in d.
+    #[inline]
+    pub(super) fn apart(&self, particle: u32, link: Link<D>) -> Vector<D> {
+        let mut apart = self.spot(link.particle()).home - self.spot(particle).home;
+        if link.image() != 0 {
+            let turns = Link::<D>::turns_of(link.image());
+            for (axis, turns) in turns.into_iter().enumerate() {
+                apart[axis] += f64::from(turns) * self.axes[axis].length();
+            }
+        }
+        apart
+    }
+
+    /// How much farther away than `reach`, in d, somebody may be who is told to be within it.
+    pub(super) fn told_error(&self, reach: f64) -> f64 {
+        self.rooms.told_error(reach)
+    }
+
+    /// Calls `visit` for every grain filed not `farthest` away from `particle` that is
+    /// nearer than `reach` and its own together, and perhaps for some that are farther away
+    /// by no more than the [error](Self::told_error). Itself is left out.
     #[inline]
     pub(super) fn for_each_in_reach(
         &self,
         particle: u32,
-        rings: i32,
+        farthest: f64,
         reach: f64,
-        mut visit: impl FnMut(Link<D>, &Spot<D>, f64),
+        mut visit: impl FnMut(Link<D>),
     ) {
         let own = self.spots[particle as usize].home;
-        let centre = self.cell_of(particle);
-        if 2 * rings as usize + 1 > MOST_STEPS {
-            return self.for_each_around(particle, rings, visit);
+        let farthest = farthest * SLACK;
+        let ends_of = |sign: f64| -> [i32; D] {
+            std::array::from_fn(|k| self.axes[k].cell_at(own[k] + sign * farthest))
+        };
+        let (low, high) = (ends_of(-1.0), ends_of(1.0));
+        if (0..D).any(|k| high[k] - low[k] >= MOST_STEPS as i32) {
+            return self.for_each_around(particle, low, high, reach, visit);
         }
-        // The cells before, at and after its own along each axis.
+        // The cells within which everybody is found, along each axis.
         let mut steps = [[Step::default(); MOST_STEPS]; D];
         let mut ends = [0; D];
         for (k, axis) in self.axes.iter().enumerate() {
-            for cell in centre[k] - rings..=centre[k] + rings {
-                if axis.period.is_none() && !(0..axis.count).contains(&cell) {
-                    continue;
-                }
+            for cell in low[k]..=high[k] {
                 let (within, beyond) = axis.wrapped(cell);
                 let place = own[k] - f64::from(beyond) * axis.length();
                 steps[k][ends[k]] = Step {
                     row: within as usize * axis.stride,
                     image: Link::<D>::part(beyond) << Link::<D>::place(k),
-                    place,
                     told: self.rooms.told(place - axis.corner(within)),
                 };
                 ends[k] += 1;
             }
         }
         let told_reach = self.rooms.told_reach(reach);
-        let mut here = own;
         let mut told = [0.0; D];
         let mut at = [0; D];
         loop {
@@ -372,21 +398,18 @@ impl<const D: usize> Cells<D> {
                 let step = &steps[axis][at[axis]];
                 row += step.row;
                 image += step.image;
-                here[axis] = step.place;
                 told[axis] = step.told;
             }
             for step in &steps[0][..ends[0]] {
-                here[0] = step.place;
                 told[0] = step.told;
-                let cell = row + step.row;
-                self.rooms.near(cell, &told, told_reach, |other| {
-                    if other != particle
-                        && let Some(spot) = self.spots.get(other as usize)
-                    {
-                        let squared = (spot.home - here).norm_squared();
-                        visit(Link::new(other, image + step.image), spot, squared);
-                    }
-                });
+                let image = image + step.image;
+                self.rooms
+                    .near(row + step.row, &told, told_reach, |other, certain| {
+                        let link = Link::new(other, image);
+                        if other != particle && (certain || self.is_within(particle, link, reach)) {
+                            visit(link);
+                        }
+                    });
             }
             // The next row, the second axis running fastest.
             let mut axis = 1;
@@ -401,24 +424,30 @@ impl<const D: usize> Cells<D> {
         }
     }
 
+    /// Whether somebody is nearer than `reach` and its own together.
+    #[cold]
+    #[inline(never)]
+    fn is_within(&self, particle: u32, link: Link<D>, reach: f64) -> bool {
+        let both = reach + self.spot(link.particle()).reach;
+        self.apart(particle, link).norm_squared() < both * both
+    }
+
     /// The same in a box that is very narrow.
     #[cold]
     #[inline(never)]
     fn for_each_around(
         &self,
         particle: u32,
-        rings: i32,
-        mut visit: impl FnMut(Link<D>, &Spot<D>, f64),
+        low: [i32; D],
+        high: [i32; D],
+        reach: f64,
+        mut visit: impl FnMut(Link<D>),
     ) {
-        let own = self.spots[particle as usize].home;
-        self.for_each_cell(particle, rings, |turns, other| {
-            let spot = &self.spots[other as usize];
-            let mut apart = spot.home - own;
-            for axis in 0..D {
-                apart[axis] += f64::from(turns[axis]) * self.axes[axis].length();
+        self.for_each_cell(particle, low, high, |turns, other| {
+            let link = Link::new(other, Link::<D>::image_of(&turns));
+            if self.is_within(particle, link, reach) {
+                visit(link);
             }
-            let image = Link::<D>::image_of(&turns);
-            visit(Link::new(other, image), spot, apart.norm_squared());
         });
     }
 
@@ -426,7 +455,16 @@ impl<const D: usize> Cells<D> {
     /// itself left out.
     pub(super) fn for_each_near(&self, particle: u32, rings: i32, mut visit: impl FnMut(Found<D>)) {
         let own = self.turns(particle);
-        self.for_each_cell(particle, rings, |turns, other| {
+        let centre = self.cell_of(particle);
+        let mut low = centre.map(|c| c - rings);
+        let mut high = centre.map(|c| c + rings);
+        for (k, axis) in self.axes.iter().enumerate() {
+            if axis.period.is_none() {
+                low[k] = low[k].max(0);
+                high[k] = high[k].min(axis.count - 1);
+            }
+        }
+        self.for_each_cell(particle, low, high, |turns, other| {
             let theirs = self.turns(other);
             visit(Found {
                 particle: other,
@@ -435,22 +473,16 @@ impl<const D: usize> Cells<D> {
         });
     }
 
-    /// Calls `visit` for every other grain within `rings` cells of that of
-    /// `particle`: how many periods away its cell is, and who it is.
+    /// Calls `visit` for every other grain in the cells from `low` to `high`: how many
+    /// periods away its cell is, and who it is.
     #[inline]
-    fn for_each_cell(&self, particle: u32, rings: i32, mut visit: impl FnMut([i32; D], u32)) {
-        let centre = self.cell_of(particle);
-        let mut low = centre.map(|c| c - rings);
-        let mut high = centre.map(|c| c + rings);
-        for axis in 0..D {
-            if self.axes[axis].period.is_none() {
-                low[axis] = low[axis].max(0);
-                high[axis] = high[axis].min(self.axes[axis].count - 1);
-            }
-            if low[axis] > high[axis] {
-                return;
-            }
-        }
+    fn for_each_cell(
+        &self,
+        particle: u32,
+        low: [i32; D],
+        high: [i32; D],
+        mut visit: impl FnMut([i32; D], u32),
+    ) {
         let mut at = low;
         loop {
             let mut turns = [0; D];
@@ -520,9 +552,7 @@ impl<const D: usize> Cells<D> {
 struct Step {
     row: usize,
     image: u32,
-    /// Where the grain is, seen from that cell.
-    place: f64,
-    /// The same from its corner.
+    /// Where the grain is, seen from the corner of that cell.
     told: f32,
 }
 

@@ -12,12 +12,14 @@
 //! never changes a trajectory.
 
 mod bed;
+mod changes;
 mod check;
 mod saved;
 
 use std::hint::black_box;
 
 use bed::Bed;
+use changes::Changes;
 pub(super) use saved::SavedNeighbours;
 
 use crate::engine::cells::{Cells, Found, Link};
@@ -29,9 +31,9 @@ use crate::particle::Vector;
 /// many.
 const SHORT_LEASH: f64 = 0.2;
 /// Length of the longest, for grains with hardly a neighbour.
-const LONG_LEASH: f64 = 0.5;
+const LONG_LEASH: f64 = 0.65;
 /// How many neighbours a list should hold on average.
-const WANTED: f64 = 12.0;
+const WANTED: f64 = 10.0;
 /// A grain whose long leash gives it more neighbours than this gets the short
 /// one.
 const MANY: usize = 16;
@@ -42,6 +44,10 @@ const FEW: usize = 3;
 /// Grains farther away than this from where they started, over the largest
 /// diameter, have escaped.
 const ESCAPE: f64 = 2.0e6;
+
+/// Edge of a cell, over the distance of two grains that may be on each other's lists.
+/// Of longer cells fewer have to be looked at, with more grains in them.
+const EDGE: f64 = 1.5;
 
 /// Leaves room for rounding.
 const ROUND: f64 = 1.0 - 1.0e-9;
@@ -68,14 +74,11 @@ pub(super) struct Neighbours<const D: usize> {
     largest: f64,
     /// The long leash, in d.
     longest: f64,
-    /// Within so many rings of cells is everybody who may be on a list: one, but
-    /// in a box that is narrower than lists reach.
-    rings: i32,
     periods: [f64; D],
     /// Room for a list in the making.
     fresh: Vec<Link<D>>,
-    /// Who was not on the list made last before it was made.
-    newcomers: Vec<Link<D>>,
+    /// Who was not on the list made last before it was made, or is no longer on it.
+    changes: Changes<D>,
 }
 
 impl<const D: usize> Neighbours<D> {
@@ -83,12 +86,9 @@ impl<const D: usize> Neighbours<D> {
     /// no more than `largest`.
     pub(super) fn new<B: Boundary<D>>(boundary: &B, positions: &[Vector<D>], largest: f64) -> Self {
         let long = leash_for(Cells::crowding(boundary, positions, largest), D);
-        // Everybody is found in adjacent cells.
         let reach = (1.0 + 2.0 * long) * largest;
-        let cells = Cells::new(boundary, positions, reach);
         Neighbours {
-            rings: rings(&cells, reach),
-            cells,
+            cells: Cells::new(boundary, positions, EDGE * reach),
             longest: long * largest,
             ties: Sparse::new(positions.len(), Tie::LOOSE),
             largest,
@@ -96,7 +96,7 @@ impl<const D: usize> Neighbours<D> {
                 boundary.period(axis).map_or(0.0, |period| period.length)
             }),
             fresh: Vec::new(),
-            newcomers: Vec::new(),
+            changes: Changes::NONE,
         }
     }
 
@@ -158,7 +158,7 @@ impl<const D: usize> Neighbours<D> {
 
     /// Whom the list that has just been made names and the one before did not.
     pub(super) fn newcomers(&self) -> &[Link<D>] {
-        &self.newcomers
+        &self.changes.come
     }
 
     /// Somebody on the list of a grain.
@@ -302,21 +302,13 @@ impl<const D: usize> Neighbours<D> {
             break;
         }
         let mut old = std::mem::take(&mut self.ties.make(particle).list);
-        for link in old.iter().filter(|link| !link.is_in(&list)) {
+        self.changes.find(&old, &list);
+        for link in &self.changes.gone {
             if let Some(tie) = self.ties.own(link.particle()) {
                 tie.forget(link.seen_from(particle));
             }
         }
-        self.newcomers.clear();
-        // Filed in another image, its links mean others than before.
-        let turned = self.cells.turns(particle) != image;
-        if turned {
-            self.newcomers.extend_from_slice(&list);
-        }
-        for link in list.iter().filter(|link| !link.is_in(&old)) {
-            if !turned {
-                self.newcomers.push(*link);
-            }
+        for link in &self.changes.come {
             if let Some(tie) = self.ties.own(link.particle()) {
                 tie.list.push(link.seen_from(particle));
                 tie.mover_changed();
@@ -324,6 +316,10 @@ impl<const D: usize> Neighbours<D> {
         }
         old.clear();
         old.extend_from_slice(&list);
+        if self.cells.turns(particle) != image {
+            // Filed in another image, its links mean others than before.
+            self.changes.come.clone_from(&list);
+        }
         self.fresh = list;
         let tie = self.ties.make(particle);
         tie.list = old;
@@ -340,27 +336,24 @@ impl<const D: usize> Neighbours<D> {
         let before = self.cells.turns(particle);
         self.cells.refile(particle, position, radius);
         let after = self.cells.turns(particle);
-        let home = self.cells.spot(particle).home;
         for other in list {
             let Some(theirs) = self.ties.own(other.particle()) else {
                 continue;
             };
             theirs.spoil();
             let mut turns = Link::<D>::turns_of(other.image());
-            let mut apart = self.cells.spot(other.particle()).home - home;
             for axis in 0..D {
                 // It may be filed in another image now.
                 turns[axis] += before[axis] - after[axis];
-                apart[axis] += f64::from(turns[axis]) * self.periods[axis];
             }
+            let link = Link::new(other.particle(), Link::<D>::image_of(&turns));
+            let apart = self.cells.apart(particle, link);
             let reach = self.largest + theirs.leash;
             let within = apart.norm_squared() < reach * reach;
-            let image = Link::<D>::image_of(&turns);
-            if !within || image != other.image() {
+            if !within || link != other {
                 theirs.forget(other.seen_from(particle));
             }
-            if within && image != other.image() {
-                let link = Link::new(other.particle(), image);
+            if within && link != other {
                 theirs.list.push(link.seen_from(particle));
             }
         }
@@ -400,13 +393,9 @@ impl<const D: usize> Neighbours<D> {
     fn gather(&self, particle: u32, list: &mut Vec<Link<D>>) {
         list.clear();
         let own = self.cells.spot(particle).reach;
+        let farthest = own + 0.5 * self.largest + self.longest;
         self.cells
-            .for_each_in_reach(particle, self.rings, own, |link, spot, squared| {
-                let reach = own + spot.reach;
-                if squared < reach * reach {
-                    list.push(link);
-                }
-            });
+            .for_each_in_reach(particle, farthest, own, |link| list.push(link));
     }
 
     /// Takes a grain that is at rest off the lists of all others: only they know
@@ -414,12 +403,14 @@ impl<const D: usize> Neighbours<D> {
     fn forget_at_rest(&mut self, particle: u32) {
         let mut partners = Vec::new();
         let farthest = self.largest + self.longest;
+        let told = self.cells.told_error(farthest);
         self.cells
-            .for_each_in_reach(particle, self.rings, farthest, |link, _, squared| {
+            .for_each_in_reach(particle, farthest + told, farthest + told, |link| {
                 let leash = self.ties[link.particle()].leash;
                 // Farther off than this it is on nobody's list, see `release`.
-                let reach = self.largest + leash;
-                if leash > 0.0 && squared * ROUND < reach * reach {
+                let reach = self.largest + leash + told;
+                let apart = self.cells.apart(particle, link).norm_squared();
+                if leash > 0.0 && apart * ROUND < reach * reach {
                     partners.push(link);
                 }
             });
@@ -430,10 +421,6 @@ impl<const D: usize> Neighbours<D> {
             }
         }
     }
-}
-
-fn rings<const D: usize>(cells: &Cells<D>, reach: f64) -> i32 {
-    libm::ceil(reach / cells.least_edge()).clamp(1.0, 500.0) as i32
 }
 
 /// The leash, over the largest diameter, with which a grain has as many

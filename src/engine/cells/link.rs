@@ -39,13 +39,6 @@ impl<const D: usize> Link<D> {
         Link::new(particle, image)
     }
 
-    /// Whether it is on a list: without a branch, for lists are short.
-    #[inline]
-    pub(in crate::engine) fn is_in(self, list: &[Self]) -> bool {
-        list.iter()
-            .fold(false, |any, link| any | (link.0 == self.0))
-    }
-
     /// The periods to add along each axis.
     #[inline]
     pub(in crate::engine) fn turns_of(image: u32) -> [i32; D] {

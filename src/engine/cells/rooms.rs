@@ -1,14 +1,14 @@
-//! Who is in each cell, laid out to be looked at four at once.
+//! Who is in each cell, laid out to be looked at eight at once.
 //!
 //! Places within a cell are kept with seven digits, rounded so that nobody is
-//! overlooked; who passes is looked at again with all.
+//! overlooked.
 
-use wide::f32x4;
+use wide::f32x8;
 
 use crate::particle::Vector;
 
 /// Grains kept together.
-const LANES: usize = 4;
+const LANES: usize = 8;
 const NONE: u32 = u32::MAX;
 /// Where nobody is; its square is infinite.
 const NOWHERE: f32 = 1.0e30;
@@ -18,7 +18,7 @@ const FAR: f64 = 8.0;
 /// Covers rounding, over the longest edge and the reach.
 const ROUND: f64 = 4.0e-6;
 
-/// Up to four grains in a cell, and where more are.
+/// Up to eight grains in a cell, and where more are.
 #[derive(Clone, Copy, Debug)]
 struct Block<const D: usize> {
     places: [[f32; LANES]; D],
@@ -53,6 +53,15 @@ impl<const D: usize> Block<D> {
         ids: [NONE; LANES],
         next: NONE,
     };
+
+    /// The lanes in which somebody is, one bit each.
+    #[cold]
+    fn taken(&self) -> u32 {
+        let ids = self.ids.iter().enumerate();
+        ids.fold(0, |taken, (lane, id)| {
+            taken | u32::from(*id != NONE) << lane
+        })
+    }
 
     fn put(&mut self, lane: usize, particle: u32, guest: &Guest<D>) {
         self.ids[lane] = particle;
@@ -95,6 +104,11 @@ impl<const D: usize> Rooms<D> {
         (reach + ROUND * (self.edge + reach)) as f32
     }
 
+    /// How much farther away than `reach`, in d, somebody may be who is told to be nearer.
+    pub(super) fn told_error(&self, reach: f64) -> f64 {
+        4.0 * ROUND * (self.edge + reach)
+    }
+
     #[inline]
     pub(super) fn guest(&self, from_corner: &Vector<D>, reach: f64) -> Guest<D> {
         Guest {
@@ -116,30 +130,38 @@ impl<const D: usize> Rooms<D> {
         }
     }
 
-    /// Calls `visit` for everybody in a cell who may be within both reaches of a
-    /// guest, and for some who are not.
+    /// Calls `visit` for everybody in a cell who is nearer to a place than both reaches, and
+    /// for some who are farther away: certainly not by more than the
+    /// [error](Self::told_error), or perhaps.
     #[inline(always)]
     pub(super) fn near(
         &self,
         cell: usize,
         here: &[f32; D],
         reach: f32,
-        mut visit: impl FnMut(u32),
+        mut visit: impl FnMut(u32, bool),
     ) {
         let mut block = self.heads[cell];
         while block != NONE {
             let this = &self.blocks[block as usize];
-            let mut squared = f32x4::ZERO;
+            let mut squared = f32x8::ZERO;
             for (places, &here) in this.places.iter().zip(here) {
-                let apart = f32x4::new(*places) - here;
+                let apart = f32x8::new(*places) - here;
                 squared += apart * apart;
             }
-            let both = f32x4::new(this.reaches) + reach;
-            let mut lanes = !squared.simd_gt(both * both).to_bitmask() & 0b1111;
-            while lanes != 0 {
-                let lane = lanes.trailing_zeros() as usize;
-                lanes &= lanes - 1;
-                visit(this.ids[lane]);
+            let both = f32x8::new(this.reaches) + reach;
+            let mut lanes = !squared.simd_gt(both * both).to_bitmask() & 0xff;
+            if lanes != 0 {
+                // Those whose places are not told.
+                let unknown = squared.simd_ne(squared).to_bitmask();
+                if unknown != 0 {
+                    lanes &= this.taken();
+                }
+                while lanes != 0 {
+                    let lane = lanes.trailing_zeros() as usize;
+                    lanes &= lanes - 1;
+                    visit(this.ids[lane], unknown >> lane & 1 == 0);
+                }
             }
             block = this.next;
         }
@@ -268,7 +290,10 @@ mod tests {
                 for (cell, list) in plain.iter().enumerate() {
                     let mut near = Vec::new();
                     let here = [rooms.told(0.2), rooms.told(0.5)];
-                    rooms.near(cell, &here, rooms.told_reach(0.1), |id| near.push(id));
+                    rooms.near(cell, &here, rooms.told_reach(0.1), |id, certain| {
+                        assert!(certain);
+                        near.push(id);
+                    });
                     near.sort_unstable();
                     let in_reach = |id: &&u32| (0.04 * f64::from(**id) - 0.2).abs() < 0.2001;
                     let mut expected: Vec<u32> = list.iter().filter(in_reach).copied().collect();
@@ -276,8 +301,11 @@ mod tests {
                     prop_assert_eq!(near, expected);
                     // Somewhere that cannot be told is near everybody.
                     let mut all = 0;
-                    rooms.near(cell, &[rooms.told(1.0e9), 0.0], 0.1, |id| all += u32::from(id != NONE));
-                    prop_assert_eq!(all as usize, list.len());
+                    rooms.near(cell, &[rooms.told(1.0e9), 0.0], 0.1, |id, certain| {
+                        assert!(id != NONE && !certain);
+                        all += 1;
+                    });
+                    prop_assert_eq!(all, list.len());
                 }
             }
         }

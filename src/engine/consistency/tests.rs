@@ -152,7 +152,9 @@ fn faults_of_lists_are_seen() {
     seen(&loose, "list");
 
     let mut misfiled = heap();
-    let elsewhere = place + Vector::<2>::new(3.0, 0.0);
+    // Another cell of the same image.
+    let up = if place[1] < 5.0 { 5.0 } else { -5.0 };
+    let elsewhere = place + Vector::<2>::new(0.0, up);
     misfiled.world.near.misfile(mover, &elsewhere);
     seen(&misfiled, "sits in cell");
 }
@@ -170,7 +172,7 @@ fn faults_of_states_are_seen() {
     seen(&miscounted, "modes for");
 
     let mut strayed = heap();
-    strayed.world.bodies[mover as usize].position[1] += 1.0;
+    strayed.world.bodies[mover as usize].position[1] += 3.0;
     seen(&strayed, "on a leash of");
 
     let mut ahead = heap();

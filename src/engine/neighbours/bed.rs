@@ -133,13 +133,24 @@ impl<const D: usize> Tie<D> {
 }
 
 impl<const D: usize> Neighbours<D> {
-    /// Sees to it that the [bed](Self::bed) of a grain is that of its list.
+    /// Sees to it that the [bed](Self::bed) of a grain is that of its list, if there is
+    /// anybody at all at rest.
     #[inline]
-    pub(in crate::engine) fn make_bed(&mut self, particle: u32, bodies: &[Body<D>]) {
+    pub(in crate::engine) fn make_bed(
+        &mut self,
+        particle: u32,
+        anybody_rests: bool,
+        bodies: &[Body<D>],
+    ) {
         if let Some(tie) = self.ties.own(particle)
             && !tie.divided
         {
-            tie.divide(particle, &self.periods, &self.cells, bodies);
+            if anybody_rests {
+                tie.divide(particle, &self.periods, &self.cells, bodies);
+            } else {
+                tie.bed = None;
+                tie.divided = true;
+            }
         }
     }
 

@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use crate::engine::cells::{Cells, Link, SavedCells};
-use crate::engine::neighbours::{Neighbours, Tie};
+use crate::engine::neighbours::{Changes, Neighbours, Tie};
 use crate::engine::sparse::Sparse;
 use crate::model::Boundary;
 use crate::particle::Vector;
@@ -95,9 +95,7 @@ impl<const D: usize> Neighbours<D> {
             let reach = radius_of(saved.largest, particle) + tie.leash;
             cells.file_at(particle, &tie.home, reach);
         }
-        let reach = saved.largest + 2.0 * saved.longest;
         let neighbours = Neighbours {
-            rings: super::rings(&cells, reach),
             cells,
             ties,
             largest: saved.largest,
@@ -106,7 +104,7 @@ impl<const D: usize> Neighbours<D> {
                 boundary.period(axis).map_or(0.0, |period| period.length)
             }),
             fresh: Vec::new(),
-            newcomers: Vec::new(),
+            changes: Changes::NONE,
         };
         if !neighbours.are_mutual() {
             return Err("two lists do not agree");
