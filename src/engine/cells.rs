@@ -285,20 +285,11 @@ impl<const D: usize> Cells<D> {
         }
     }
 
-    /// The shortest edge, in d.
-    pub(super) fn least_edge(&self) -> f64 {
-        self.axes
-            .iter()
-            .map(|axis| axis.edge)
-            .fold(f64::INFINITY, f64::min)
-    }
-
-    /// The most rings of cells that are worth a look: beyond, everybody has
-    /// been seen, and in all images within a period and the edge of a cell.
-    /// (Twice as many rings as cells, for the edges of a periodic axis may be
-    /// almost twice as long as the shortest.)
-    pub(super) fn rings(&self) -> i32 {
-        2 * self.axes.iter().map(|axis| axis.count).max().unwrap_or(1) + 1
+    /// How far it is worth to look, in d: within is everybody, and in all images within a
+    /// period and the edge of a cell.
+    pub(super) fn farthest(&self) -> f64 {
+        let cells = self.axes.iter().map(|axis| axis.count).max().unwrap_or(1);
+        (2.0 * f64::from(cells) + 1.0) * longest(&self.axes)
     }
 
     /// Files a grain under the cell of another position.
@@ -432,7 +423,7 @@ impl<const D: usize> Cells<D> {
         self.apart(particle, link).norm_squared() < both * both
     }
 
-    /// The same in a box that is very narrow.
+    /// The same in a box that is very narrow, or far around.
     #[cold]
     #[inline(never)]
     fn for_each_around(
@@ -448,28 +439,6 @@ impl<const D: usize> Cells<D> {
             if self.is_within(particle, link, reach) {
                 visit(link);
             }
-        });
-    }
-
-    /// Calls `visit` for every grain within `rings` cells of `particle`'s own,
-    /// itself left out.
-    pub(super) fn for_each_near(&self, particle: u32, rings: i32, mut visit: impl FnMut(Found<D>)) {
-        let own = self.turns(particle);
-        let centre = self.cell_of(particle);
-        let mut low = centre.map(|c| c - rings);
-        let mut high = centre.map(|c| c + rings);
-        for (k, axis) in self.axes.iter().enumerate() {
-            if axis.period.is_none() {
-                low[k] = low[k].max(0);
-                high[k] = high[k].min(axis.count - 1);
-            }
-        }
-        self.for_each_cell(particle, low, high, |turns, other| {
-            let theirs = self.turns(other);
-            visit(Found {
-                particle: other,
-                turns: std::array::from_fn(|axis| turns[axis] + own[axis] - theirs[axis]),
-            });
         });
     }
 

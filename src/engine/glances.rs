@@ -269,14 +269,14 @@ impl<const D: usize> Glances<D> {
         for axis in 0..D {
             let place = f64x4::new(few.map(|other| other.place[axis]));
             let velocity = f64x4::new(few.map(|other| other.velocity[axis]));
-            let mut apart = place + velocity * own.passed - own.here[axis];
+            let mut apart = velocity.mul_add(f64x4::splat(own.passed), place) - own.here[axis];
             if let Some(shifts) = &shifts {
                 apart += f64x4::new(shifts.map(|shift| shift[axis]));
             }
             let velocity = velocity - own.velocity[axis];
-            squared += apart * apart;
-            b += apart * velocity;
-            a += velocity * velocity;
+            squared = apart.mul_add(apart, squared);
+            b = apart.mul_add(velocity, b);
+            a = velocity.mul_add(velocity, a);
         }
         let distance = f64x4::new(few.map(|other| other.radius)) + (own.radius + own.blur);
         let contact = distance * distance;

@@ -371,21 +371,29 @@ impl<const D: usize> Neighbours<D> {
         &self,
         particle: u32,
         distance: f64,
-        visit: impl FnMut(Found<D>),
+        mut visit: impl FnMut(Found<D>),
     ) {
+        let mut reach = self.spread(particle, distance);
+        let farthest = f64::min(reach + self.longest, self.cells.farthest());
+        if self.is_everything(particle, distance) {
+            // Also those that have left the grid.
+            reach = f64::INFINITY;
+        }
         self.cells
-            .for_each_near(particle, self.rings_for(particle, distance), visit);
+            .for_each_in_reach(particle, farthest, reach, |link| {
+                visit(self.cells.found(particle, link));
+            });
     }
 
     /// Whether looking farther than `distance`, in d, finds nobody new.
     pub(super) fn is_everything(&self, particle: u32, distance: f64) -> bool {
-        self.rings_for(particle, distance) >= self.cells.rings()
+        self.spread(particle, distance) >= self.cells.farthest()
     }
 
-    fn rings_for(&self, particle: u32, distance: f64) -> i32 {
-        let spread = distance + self.ties[particle].leash + self.longest;
-        let rings = libm::ceil(spread / self.cells.least_edge());
-        (rings.clamp(1.0, 1.0e6) as i32).min(self.cells.rings())
+    /// How far from its anchor somebody may be who is at a distance from a grain, without
+    /// what that one may have moved, in d.
+    fn spread(&self, particle: u32, distance: f64) -> f64 {
+        distance + self.ties[particle].leash
     }
 
     /// Lists everybody whose anchor is near enough to that of `particle`.

@@ -153,13 +153,13 @@ pub(super) fn not_before<const D: usize, F: PolynomialFlight<D>>(
         }
         let apart = f64x4::new(positions[axis]) + mean * after - here[axis];
         velocity -= speed[axis];
-        squared += apart * apart;
-        b += apart * velocity;
-        a += velocity * velocity;
+        squared = apart.mul_add(apart, squared);
+        b = apart.mul_add(velocity, b);
+        a = velocity.mul_add(velocity, a);
         if F::ACCELERATES {
-            fall += apart * acceleration;
-            c3 += velocity * acceleration;
-            bent += acceleration * acceleration;
+            fall = apart.mul_add(acceleration, fall);
+            c3 = velocity.mul_add(acceleration, c3);
+            bent = acceleration.mul_add(acceleration, bent);
         }
     }
     let gaps = Gaps {
@@ -185,10 +185,10 @@ pub(super) fn not_before_resting<const D: usize, F: PolynomialFlight<D>>(
     let (mut squared, mut b, mut fall) = (f64x4::ZERO, f64x4::ZERO, f64x4::ZERO);
     for axis in 0..D {
         let apart = f64x4::new(nook.resting.places[axis]) - nook.place[axis];
-        squared += apart * apart;
-        b -= apart * velocity[axis];
+        squared = apart.mul_add(apart, squared);
+        b = apart.mul_neg_add(f64x4::splat(velocity[axis]), b);
         if F::ACCELERATES {
-            fall -= apart * acceleration[axis];
+            fall = apart.mul_neg_add(f64x4::splat(acceleration[axis]), fall);
         }
     }
     let gaps = Gaps {

@@ -150,10 +150,11 @@ impl<const D: usize> Rooms<D> {
                 squared += apart * apart;
             }
             let both = f32x8::new(this.reaches) + reach;
-            let mut lanes = !squared.simd_gt(both * both).to_bitmask() & 0xff;
+            let excess = squared - both * both;
+            let mut lanes = !excess.simd_gt(f32x8::ZERO).to_bitmask() & 0xff;
             if lanes != 0 {
-                // Those whose places are not told.
-                let unknown = squared.simd_ne(squared).to_bitmask();
+                // Those whose places, or what they are beside, are not told.
+                let unknown = excess.simd_ne(excess).to_bitmask();
                 if unknown != 0 {
                     lanes &= this.taken();
                 }
