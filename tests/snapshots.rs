@@ -169,7 +169,7 @@ fn work_of_a_deposition() {
     sleep 7650
     wall 0
     elastic 215000
-    transfer 1730
+    transfer 1670
     guard 536
     ");
 }

@@ -31,7 +31,7 @@ use crate::particle::Vector;
 /// many.
 const SHORT_LEASH: f64 = 0.2;
 /// Length of the longest, for grains with hardly a neighbour.
-const LONG_LEASH: f64 = 0.65;
+const LONG_LEASH: f64 = 0.6;
 /// How many neighbours a list should hold on average.
 const WANTED: f64 = 10.0;
 /// A grain whose long leash gives it more neighbours than this gets the short

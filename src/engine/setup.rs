@@ -95,7 +95,7 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
                 aloft: Aloft::nobody(),
             },
             epoch_events: 0,
-            memories: vec![MemoryOf::<M, D>::default(); count],
+            memories: Vec::new(),
             spins: vec![SpinOf::<M, D>::default(); count],
             slots: Sparse::new(count, Slot::EMPTY),
             queue: EventQueue::new(count, settings.start),
@@ -124,10 +124,12 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
         for particle in 0..count as u32 {
             simulation.refuse_contacts(particle)?;
         }
+        simulation.lift_off();
+        // Not before: the grid has just given much room back.
+        simulation.memories = vec![MemoryOf::<M, D>::default(); count];
         for particle in 0..count as u32 {
             simulation.tell_started(particle);
         }
-        simulation.lift_off();
         for particle in 0..count as u32 {
             simulation.predict(particle);
         }
