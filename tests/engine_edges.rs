@@ -3,7 +3,7 @@
 use grainfall::boundary::{Cuboid, Side};
 use grainfall::collide::Restitution;
 use grainfall::dynamics::ForceFree;
-use grainfall::engine::{Limits, Simulation, StopReason};
+use grainfall::engine::{Limits, Settings, Simulation, StopReason};
 use grainfall::model::{
     Dynamics, Flight, Model, Motion, Observer, Occurrence, Parts, Surroundings,
 };
@@ -173,6 +173,44 @@ fn grains_at_rest_grow_until_they_touch() {
         assert!(simulation.time() >= last);
     }
     assert!((last.units() - 2.0).abs() < 1.0e-12);
+}
+
+/// At t = −2 and with γ = 1/4 diameters are half of those at t = 0: they grow from then on as
+/// those that start at t = 0 with γ = 1/2.
+#[test]
+fn grains_that_grow_meet_at_whatever_hour_they_start() {
+    let seen = |start: f64, rate: f64| {
+        let dynamics = grainfall::dynamics::Growing::new(ForceFree, rate);
+        let boundary = Cuboid::new([Side::periodic(6.0); 2]).unwrap();
+        let grains = (0..9)
+            .map(|place| {
+                let at = Vector::<2>::new(f64::from(place % 3), f64::from(place / 3)) * 2.0;
+                let angle = f64::from(place) * 2.4;
+                Particle::new(
+                    at,
+                    Vector::<2>::new(libm::cos(angle), libm::sin(angle)) * 0.1,
+                )
+            })
+            .collect();
+        let settings = Settings {
+            start: Time::from_units(start),
+            ..Settings::default()
+        };
+        let mut simulation =
+            Simulation::with_settings(elastic(dynamics, boundary), grains, settings).unwrap();
+        let mut meetings = Vec::new();
+        simulation.run(&Limits::events(12), &mut |occurrence: &Occurrence<2>| {
+            let after = occurrence.time.units() - start;
+            meetings.push((after, occurrence.particle, occurrence.other));
+        });
+        meetings
+    };
+    let (early, late) = (seen(-2.0, 0.25), seen(0.0, 0.5));
+    assert!(early.len() > 5);
+    for (one, two) in early.iter().zip(&late) {
+        assert_eq!((one.1, one.2), (two.1, two.2));
+        assert!((one.0 - two.0).abs() < 1.0e-9, "{} and {}", one.0, two.0);
+    }
 }
 
 type Grains = Vec<Particle<3>>;

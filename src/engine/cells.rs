@@ -10,6 +10,8 @@ mod check;
 mod link;
 mod rooms;
 mod saved;
+#[cfg(test)]
+mod tests;
 
 use rooms::{Guest, Rooms};
 
@@ -19,7 +21,7 @@ pub(super) use saved::SavedCells;
 use crate::model::{Boundary, Period};
 use crate::particle::Vector;
 
-/// Edges are longer than what they must cover by this factor, for rounding.
+/// Where somebody is looked for is wider by this factor, for rounding.
 const SLACK: f64 = 1.0 + 1.0e-9;
 
 /// So many cells along an axis are looked at without further ado.
@@ -64,6 +66,27 @@ impl Axis {
         } else {
             place as i32
         }
+    }
+
+    /// The first and the last cell in which somebody no farther away than this may be filed,
+    /// also if a place lies outside the grid.
+    #[inline]
+    fn cells_around(&self, along: f64, farthest: f64) -> (i32, i32) {
+        let mut along = along;
+        if self.period.is_none() {
+            let end = self.origin + f64::from(self.count) * self.edge;
+            along = along.max(self.origin).min(end);
+        }
+        (
+            self.cell_at(along - farthest),
+            self.cell_at(along + farthest),
+        )
+    }
+
+    /// How far it is worth to look, in d: within is everybody in the grid, and in all images
+    /// within a period and the edge of a cell.
+    fn farthest(&self) -> f64 {
+        (2.0 * f64::from(self.count) + 1.0) * self.edge
     }
 
     /// Where a cell begins.
@@ -137,13 +160,13 @@ pub(super) struct Found<const D: usize> {
 }
 
 impl<const D: usize> Cells<D> {
-    /// A grid for grains at these positions; grains in cells that are not
-    /// neighbours are farther apart than `reach`.
-    pub(super) fn new<B: Boundary<D>>(boundary: &B, positions: &[Vector<D>], reach: f64) -> Self {
-        let (low, span) = extents(boundary, positions, reach);
+    /// A grid for grains at these positions, of cells that are no shorter than `edge` where
+    /// a box is not.
+    pub(super) fn new<B: Boundary<D>>(boundary: &B, positions: &[Vector<D>], edge: f64) -> Self {
+        let (low, span) = extents(boundary, positions, edge);
         // Not many more cells than grains, however thin the gas.
         let most_cells = most_cells(positions.len()) as f64;
-        let mut edge = reach * SLACK;
+        let mut edge = edge;
         let cells_of = |edge: f64, axis: usize| (span[axis] / edge).floor().clamp(1.0, 1.0e9);
         while (0..D).map(|axis| cells_of(edge, axis)).product::<f64>() > most_cells {
             edge *= 1.1;
@@ -285,11 +308,9 @@ impl<const D: usize> Cells<D> {
         }
     }
 
-    /// How far it is worth to look, in d: within is everybody, and in all images within a
-    /// period and the edge of a cell.
+    /// Beyond this, in d, it is not worth to look along any axis.
     pub(super) fn farthest(&self) -> f64 {
-        let cells = self.axes.iter().map(|axis| axis.count).max().unwrap_or(1);
-        (2.0 * f64::from(cells) + 1.0) * longest(&self.axes)
+        self.axes.iter().map(Axis::farthest).fold(0.0, f64::max)
     }
 
     /// Files a grain under the cell of another position.
@@ -347,7 +368,7 @@ impl<const D: usize> Cells<D> {
 
     /// Calls `visit` for every grain filed not `farthest` away from `particle` that is
     /// nearer than `reach` and its own together, and perhaps for some that are farther away
-    /// by no more than the [error](Self::told_error). Itself is left out.
+    /// by no more than the [error](Self::told_error) for both. Itself is left out.
     #[inline]
     pub(super) fn for_each_in_reach(
         &self,
@@ -358,18 +379,24 @@ impl<const D: usize> Cells<D> {
     ) {
         let own = self.spots[particle as usize].home;
         let farthest = farthest * SLACK;
-        let ends_of = |sign: f64| -> [i32; D] {
-            std::array::from_fn(|k| self.axes[k].cell_at(own[k] + sign * farthest))
-        };
-        let (low, high) = (ends_of(-1.0), ends_of(1.0));
-        if (0..D).any(|k| high[k] - low[k] >= MOST_STEPS as i32) {
-            return self.for_each_around(particle, low, high, reach, visit);
+        let around: [(i32, i32); D] =
+            std::array::from_fn(|k| self.axes[k].cells_around(own[k], farthest));
+        if around
+            .iter()
+            .any(|(low, high)| high - low >= MOST_STEPS as i32)
+        {
+            return self.for_each_around(particle, around, |turns, other| {
+                let link = Link::new(other, Link::<D>::image_of(&turns));
+                if self.is_within(particle, link, reach) {
+                    visit(link);
+                }
+            });
         }
         // The cells within which everybody is found, along each axis.
         let mut steps = [[Step::default(); MOST_STEPS]; D];
         let mut ends = [0; D];
         for (k, axis) in self.axes.iter().enumerate() {
-            for cell in low[k]..=high[k] {
+            for cell in around[k].0..=around[k].1 {
                 let (within, beyond) = axis.wrapped(cell);
                 let place = own[k] - f64::from(beyond) * axis.length();
                 steps[k][ends[k]] = Step {
@@ -423,35 +450,39 @@ impl<const D: usize> Cells<D> {
         self.apart(particle, link).norm_squared() < both * both
     }
 
-    /// The same in a box that is very narrow, or far around.
-    #[cold]
+    /// Calls `visit` for every other grain filed not `farthest` away from `particle`, and for
+    /// some that are farther away.
+    pub(super) fn for_each_found(
+        &self,
+        particle: u32,
+        farthest: f64,
+        mut visit: impl FnMut(Found<D>),
+    ) {
+        let own = self.spots[particle as usize].home;
+        let around: [(i32, i32); D] = std::array::from_fn(|k| {
+            let axis = &self.axes[k];
+            axis.cells_around(own[k], f64::min(farthest * SLACK, axis.farthest()))
+        });
+        let before = self.turns(particle);
+        self.for_each_around(particle, around, |turns, other| {
+            let theirs = self.turns(other);
+            visit(Found {
+                particle: other,
+                turns: std::array::from_fn(|axis| turns[axis] + before[axis] - theirs[axis]),
+            });
+        });
+    }
+
+    /// Calls `visit` for every other grain in the cells from the first to the last along each
+    /// axis: how many periods away its cell is, and who it is.
     #[inline(never)]
     fn for_each_around(
         &self,
         particle: u32,
-        low: [i32; D],
-        high: [i32; D],
-        reach: f64,
-        mut visit: impl FnMut(Link<D>),
-    ) {
-        self.for_each_cell(particle, low, high, |turns, other| {
-            let link = Link::new(other, Link::<D>::image_of(&turns));
-            if self.is_within(particle, link, reach) {
-                visit(link);
-            }
-        });
-    }
-
-    /// Calls `visit` for every other grain in the cells from `low` to `high`: how many
-    /// periods away its cell is, and who it is.
-    #[inline]
-    fn for_each_cell(
-        &self,
-        particle: u32,
-        low: [i32; D],
-        high: [i32; D],
+        around: [(i32, i32); D],
         mut visit: impl FnMut([i32; D], u32),
     ) {
+        let (low, high) = (around.map(|(low, _)| low), around.map(|(_, high)| high));
         let mut at = low;
         loop {
             let mut turns = [0; D];

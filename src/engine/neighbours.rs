@@ -3,7 +3,8 @@
 //! A moving grain is tied to an *anchor* by a *leash*: as long as its centre is
 //! no farther from the anchor than the leash is long, its list holds everybody
 //! it can touch. Two grains are on each other's lists if their anchors are
-//! nearer than the contact distance and both leashes. Grains at rest have a
+//! nearer than the contact distance and both leashes, and perhaps if they are
+//! farther apart by a rounding to seven digits. Grains at rest have a
 //! leash of length 0 and no list; those that move list them.
 //! (Verlet 1967, doi:10.1103/PhysRev.159.98; one list renewed at a time as in
 //! Donev, Torquato & Stillinger 2005, doi:10.1016/j.jcp.2004.08.014.)
@@ -373,16 +374,16 @@ impl<const D: usize> Neighbours<D> {
         distance: f64,
         mut visit: impl FnMut(Found<D>),
     ) {
-        let mut reach = self.spread(particle, distance);
-        let farthest = f64::min(reach + self.longest, self.cells.farthest());
-        if self.is_everything(particle, distance) {
-            // Also those that have left the grid.
-            reach = f64::INFINITY;
+        let reach = self.spread(particle, distance);
+        if reach <= 2.0 * (self.largest + self.longest) {
+            self.cells
+                .for_each_in_reach(particle, reach + self.longest, reach, |link| {
+                    visit(self.cells.found(particle, link));
+                });
+        } else {
+            self.cells
+                .for_each_found(particle, reach + self.longest, visit);
         }
-        self.cells
-            .for_each_in_reach(particle, farthest, reach, |link| {
-                visit(self.cells.found(particle, link));
-            });
     }
 
     /// Whether looking farther than `distance`, in d, finds nobody new.

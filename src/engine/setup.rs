@@ -78,7 +78,7 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
                 allowed: "a time at which diameters are positive is allowed",
             });
         }
-        check_periods(&model, largest * scale)?;
+        check_periods(&model, largest)?;
         let count = particles.len();
         let near = Neighbours::new(model.boundary(), &[], 1.0);
         let mut simulation = Simulation {
@@ -88,7 +88,7 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
                 near,
                 clock: settings.start,
                 modes: ModeCounts::default(),
-                largest,
+                largest: largest / scale,
                 ledger: Ledger::default(),
                 blur: 0.0,
                 glances: Glances::new(count, settings.start),
@@ -150,7 +150,7 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
         let index = self.world.bodies.len() as u32;
         let id = ParticleId(index);
         validate(id, &particle)?;
-        if particle.diameter > self.world.largest {
+        if particle.diameter / self.scale_at(self.world.clock) > self.world.largest {
             return Err(SetupError::Particle {
                 id,
                 field: "diameter",
