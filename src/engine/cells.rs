@@ -6,6 +6,7 @@
 //! exactly: it is the one whose cell lies next to the grain's own. Outermost
 //! cells of axes that are not periodic reach to infinity.
 
+mod axis;
 mod check;
 mod link;
 mod rooms;
@@ -13,12 +14,13 @@ mod saved;
 #[cfg(test)]
 mod tests;
 
+use axis::Axis;
 use rooms::{Guest, Rooms};
 
 pub(super) use link::Link;
 pub(super) use saved::SavedCells;
 
-use crate::model::{Boundary, Period};
+use crate::model::Boundary;
 use crate::particle::Vector;
 
 /// Where somebody is looked for is wider by this factor, for rounding.
@@ -26,92 +28,6 @@ const SLACK: f64 = 1.0 + 1.0e-9;
 
 /// So many cells along an axis are looked at without further ado.
 const MOST_STEPS: usize = 3;
-
-/// Cells of an axis.
-#[derive(Clone, Copy, Debug)]
-struct Axis {
-    origin: f64,
-    edge: f64,
-    /// Cells in a d.
-    per_edge: f64,
-    count: i32,
-    stride: usize,
-    period: Option<Period>,
-}
-
-impl Axis {
-    fn new(origin: f64, edge: f64, count: i32, stride: usize, period: Option<Period>) -> Self {
-        Axis {
-            origin,
-            edge,
-            per_edge: 1.0 / edge,
-            count,
-            stride,
-            period,
-        }
-    }
-
-    /// The period, in d; zero if there is none.
-    #[inline]
-    fn length(&self) -> f64 {
-        self.period.map_or(0.0, |period| period.length)
-    }
-
-    /// The cell of a place, counted on beyond the ends of a period.
-    #[inline]
-    fn cell_at(&self, along: f64) -> i32 {
-        let place = ((along - self.origin) * self.per_edge).floor();
-        if self.period.is_none() {
-            place.clamp(0.0, f64::from(self.count - 1)) as i32
-        } else {
-            place as i32
-        }
-    }
-
-    /// The first and the last cell in which somebody no farther away than this may be filed,
-    /// also if a place lies outside the grid.
-    #[inline]
-    fn cells_around(&self, along: f64, farthest: f64) -> (i32, i32) {
-        let mut along = along;
-        if self.period.is_none() {
-            let end = self.origin + f64::from(self.count) * self.edge;
-            along = along.max(self.origin).min(end);
-        }
-        (
-            self.cell_at(along - farthest),
-            self.cell_at(along + farthest),
-        )
-    }
-
-    /// How far it is worth to look, in d: within is everybody in the grid, and in all images
-    /// within a period and the edge of a cell.
-    fn farthest(&self) -> f64 {
-        (2.0 * f64::from(self.count) + 1.0) * self.edge
-    }
-
-    /// Where a cell begins.
-    #[inline]
-    fn corner(&self, cell: i32) -> f64 {
-        self.origin + f64::from(cell) * self.edge
-    }
-
-    /// What a cell adds to the place in a list of all.
-    #[inline]
-    fn step(&self, cell: i32) -> u32 {
-        (cell as usize * self.stride) as u32
-    }
-
-    /// The cell of the grid that a cell is an image of, and how many periods
-    /// away it is.
-    #[inline]
-    fn wrapped(&self, cell: i32) -> (i32, i32) {
-        if (0..self.count).contains(&cell) {
-            (cell, 0)
-        } else {
-            (cell.rem_euclid(self.count), cell.div_euclid(self.count))
-        }
-    }
-}
 
 impl<const D: usize> Found<D> {
     /// How `particle`, next to which this was found, is found next to this.
