@@ -171,10 +171,15 @@ impl<const D: usize> World<D> {
         }
     }
 
-    /// How high a grain that is not aloft gets as long as its list is good.
+    /// How high a grain that is not aloft gets as long as its list is good, or as it lies
+    /// there without one.
     fn top(&self, particle: u32) -> f64 {
-        let near = &self.near;
-        self.aloft.up.dot(&near.anchor(particle)) + near.reach(particle)
+        let (near, body) = (&self.near, &self.bodies[particle as usize]);
+        if near.is_tied(particle) {
+            self.aloft.up.dot(&near.anchor(particle)) + near.reach(particle)
+        } else {
+            self.aloft.up.dot(&body.position) + body.radius
+        }
     }
 
     /// Lets the ceiling be above a grain that has been tied or laid down, or falls no
@@ -232,11 +237,12 @@ impl<const D: usize> World<D> {
         distance: f64,
         mut visit: impl FnMut(Found<D>),
     ) {
-        self.near.for_each_within(particle, distance, &mut visit);
+        let here = self.particle_now(model, particle).position;
+        self.near
+            .for_each_within(particle, &here, distance, &mut visit);
         if self.aloft.is_empty() {
             return;
         }
-        let here = self.particle_now(model, particle).position;
         let fallen = self.aloft.fallen(self.clock);
         // Leaves room for rounding.
         let reach = distance + 1.0e-3 * self.aloft.margin;

@@ -421,7 +421,7 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
             }
         };
         let near = &self.world.near;
-        if near.slack(particle, &one.position) > margin {
+        if near.is_tied(particle) && near.slack(particle, &one.position) > margin {
             near.list(particle).for_each(|found| look(&found));
         } else {
             self.world

@@ -20,11 +20,15 @@ use rooms::{Guest, Rooms};
 pub(super) use link::Link;
 pub(super) use saved::SavedCells;
 
+use crate::engine::sparse::Sparse;
 use crate::model::Boundary;
 use crate::particle::Vector;
 
 /// Where somebody is looked for is wider by this factor, for rounding.
 const SLACK: f64 = 1.0 + 1.0e-9;
+
+/// Marks the cell of a grain that is stored in another image than that in the grid.
+const ELSEWHERE: u32 = 1 << 31;
 
 /// So many cells along an axis are looked at without further ado.
 const MOST_STEPS: usize = 3;
@@ -39,32 +43,16 @@ impl<const D: usize> Found<D> {
     }
 }
 
-/// Where a grain is filed: within one cache line.
-#[derive(Clone, Copy, Debug)]
-#[repr(align(32))]
-pub(super) struct Spot<const D: usize> {
-    /// Its anchor, in the image that lies in the grid; in d.
-    pub(super) home: Vector<D>,
-    /// How far from there its surface may be, in d.
-    pub(super) reach: f64,
-}
-
-/// Under which cell a grain is filed.
-#[derive(Clone, Copy, Debug)]
-struct Seat<const D: usize> {
-    /// Where the cell is in a list of all.
-    cell: u32,
-    /// From the image in the grid to the one that is stored, in periods.
-    turns: [i32; D],
-}
-
 /// The grid and who is where.
 #[derive(Clone, Debug)]
 pub(super) struct Cells<const D: usize> {
     axes: [Axis; D],
     rooms: Rooms<D>,
-    spots: Vec<Spot<D>>,
-    seats: Vec<Seat<D>>,
+    /// Where the cell of each grain is in a list of all, and whether it is stored
+    /// [elsewhere](ELSEWHERE).
+    seats: Vec<u32>,
+    /// From the image in the grid to the one that is stored, in periods, of those.
+    turns: Sparse<[i32; D]>,
 }
 
 /// A grain found next to another, with the number of periods to add to its
@@ -105,8 +93,8 @@ impl<const D: usize> Cells<D> {
         let mut cells = Cells {
             axes,
             rooms: Rooms::new(stride, longest(&axes)),
-            spots: Vec::with_capacity(positions.len()),
             seats: Vec::with_capacity(positions.len()),
+            turns: Sparse::new(0, [0; D]),
         };
         for position in positions {
             cells.add(position);
@@ -117,38 +105,48 @@ impl<const D: usize> Cells<D> {
     /// Lets nobody find some of the grains, up to when they are filed anew; their room
     /// is given back.
     pub(super) fn leave_out(&mut self, left_out: impl Fn(u32) -> bool) {
-        let all = self.rooms.all();
-        self.rooms = self.rooms.emptied();
-        for particle in all {
-            if !left_out(particle) {
-                self.link(particle);
-            }
-        }
+        self.rooms = self.rooms.without(left_out);
     }
 
-    /// Where a grain is filed.
+    /// From the image of a grain in the grid to the one that is stored, in d.
     #[inline]
-    pub(super) fn spot(&self, particle: u32) -> &Spot<D> {
-        &self.spots[particle as usize]
+    pub(super) fn home_shift(&self, particle: u32) -> Vector<D> {
+        self.shift(self.turns(particle))
     }
 
-    /// The place that a grain is filed under, in the image that is stored.
+    /// So many periods, in d.
     #[inline]
-    pub(super) fn anchor(&self, particle: u32) -> Vector<D> {
-        let mut anchor = self.spots[particle as usize].home;
-        let turns = self.turns(particle);
+    pub(super) fn shift(&self, turns: [i32; D]) -> Vector<D> {
+        let mut shift = Vector::zeros();
         if turns != [0; D] {
-            for (axis, turns) in turns.into_iter().enumerate() {
-                anchor[axis] += f64::from(turns) * self.axes[axis].length();
+            for axis in 0..D {
+                shift[axis] = f64::from(turns[axis]) * self.axes[axis].length();
             }
         }
-        anchor
+        shift
     }
 
     /// From the image of a grain in the grid to the one that is stored.
     #[inline]
     pub(super) fn turns(&self, particle: u32) -> [i32; D] {
-        self.seats[particle as usize].turns
+        if self.seats[particle as usize] & ELSEWHERE == 0 {
+            return [0; D];
+        }
+        self.turns[particle]
+    }
+
+    /// Seats a grain in a cell; returns where it has been before.
+    #[inline]
+    fn seat(&mut self, particle: u32, cell: u32, turns: [i32; D]) -> usize {
+        let elsewhere = turns != [0; D];
+        let seat = cell | if elsewhere { ELSEWHERE } else { 0 };
+        let old = std::mem::replace(&mut self.seats[particle as usize], seat);
+        if elsewhere {
+            *self.turns.make(particle) = turns;
+        } else if old & ELSEWHERE != 0 {
+            self.turns.clear(particle);
+        }
+        (old & !ELSEWHERE) as usize
     }
 
     /// How many of the grains at these positions there are, on average, in a
@@ -163,43 +161,37 @@ impl<const D: usize> Cells<D> {
         positions.len() as f64 / cubes
     }
 
-    /// Says how far a grain reaches from where it is filed.
-    pub(super) fn set_reach(&mut self, particle: u32, reach: f64) {
-        self.spots[particle as usize].reach = reach;
-        self.relink(particle);
-    }
-
-    /// Seats one more grain.
+    /// Seats one more grain, which is a point up to when it is filed anew.
     pub(super) fn add(&mut self, position: &Vector<D>) {
-        let (seat, home) = self.seat_for(position);
-        self.seats.push(seat);
-        self.spots.push(Spot { home, reach: 0.0 });
-        self.link(self.seats.len() as u32 - 1);
+        let (cell, turns, home) = self.seat_for(position);
+        let particle = self.seats.len() as u32;
+        self.seats.push(0);
+        self.turns.push();
+        self.seat(particle, cell, turns);
+        self.link(particle, &home, 0.0);
     }
 
-    /// The cell for a position, and the image of the position in it.
+    /// The cell for a position, how many periods away from there it is, and its image in
+    /// the cell.
     #[inline]
-    fn seat_for(&self, position: &Vector<D>) -> (Seat<D>, Vector<D>) {
+    fn seat_for(&self, position: &Vector<D>) -> (u32, [i32; D], Vector<D>) {
         let mut home = *position;
-        let mut seat = Seat {
-            cell: 0,
-            turns: [0; D],
-        };
+        let (mut place, mut turns) = (0, [0; D]);
         for k in 0..D {
             let axis = &self.axes[k];
             let cell = axis.cell_at(position[k]);
             if axis.period.is_none() {
-                seat.cell += axis.step(cell);
+                place += axis.step(cell);
                 continue;
             }
-            let (cell, turns) = axis.wrapped(cell);
-            seat.cell += axis.step(cell);
-            seat.turns[k] = turns;
-            if turns != 0 {
-                home[k] -= f64::from(turns) * axis.length();
+            let (cell, turned) = axis.wrapped(cell);
+            place += axis.step(cell);
+            turns[k] = turned;
+            if turned != 0 {
+                home[k] -= f64::from(turned) * axis.length();
             }
         }
-        (seat, home)
+        (place, turns, home)
     }
 
     /// How far a position lies outside the grid, in d, along axes that are not
@@ -220,7 +212,7 @@ impl<const D: usize> Cells<D> {
         if let Some(last) = self.seats.len().checked_sub(1) {
             self.rooms.leave(self.place_of(last as u32), last as u32);
             self.seats.pop();
-            self.spots.pop();
+            self.turns.pop();
         }
     }
 
@@ -229,23 +221,28 @@ impl<const D: usize> Cells<D> {
         self.axes.iter().map(Axis::farthest).fold(0.0, f64::max)
     }
 
-    /// Files a grain under the cell of another position.
-    pub(super) fn refile(&mut self, particle: u32, position: &Vector<D>, reach: f64) {
-        let (seat, home) = self.seat_for(position);
-        self.spots[particle as usize] = Spot { home, reach };
-        let old = std::mem::replace(&mut self.seats[particle as usize], seat);
-        if seat.cell != old.cell {
-            self.rooms.leave(old.cell as usize, particle);
-            self.link(particle);
-        } else if !self.relink(particle) {
-            self.link(particle);
+    /// Files a grain under the cell of another position, from which its surface may be as far
+    /// as `reach`, in d; returns the image of that position in the grid.
+    pub(super) fn refile(&mut self, particle: u32, position: &Vector<D>, reach: f64) -> Vector<D> {
+        let (cell, turns, home) = self.seat_for(position);
+        let before = self.seat(particle, cell, turns);
+        let (cell, guest) = (cell as usize, self.guest(particle, &home, reach));
+        if cell != before {
+            self.rooms.leave(before, particle);
+            self.rooms.enter(cell, particle, &guest);
+        } else if !self.rooms.shift(cell, particle, &guest) {
+            self.rooms.enter(cell, particle, &guest);
         }
+        home
     }
 
     /// Tells the grid that `turns` periods have been taken off a grain's
     /// position.
+    #[inline(never)]
     pub(super) fn unwind(&mut self, particle: u32, axis: usize, turns: i32) {
-        self.seats[particle as usize].turns[axis] -= turns;
+        let mut all = self.turns(particle);
+        all[axis] -= turns;
+        self.seat(particle, self.place_of(particle) as u32, all);
     }
 
     /// A grain in a cell next to that of another, in terms of where they are
@@ -264,36 +261,24 @@ impl<const D: usize> Cells<D> {
         }
     }
 
-    /// From where a grain is filed to where another is, in the image of a link, in d.
-    #[inline]
-    pub(super) fn apart(&self, particle: u32, link: Link<D>) -> Vector<D> {
-        let mut apart = self.spot(link.particle()).home - self.spot(particle).home;
-        if link.image() != 0 {
-            let turns = Link::<D>::turns_of(link.image());
-            for (axis, turns) in turns.into_iter().enumerate() {
-                apart[axis] += f64::from(turns) * self.axes[axis].length();
-            }
-        }
-        apart
-    }
-
     /// How much farther away than `reach`, in d, somebody may be who is told to be within it.
     pub(super) fn told_error(&self, reach: f64) -> f64 {
         self.rooms.told_error(reach)
     }
 
-    /// Calls `visit` for every grain filed not `farthest` away from `particle` that is
-    /// nearer than `reach` and its own together, and perhaps for some that are farther away
-    /// by no more than the [error](Self::told_error) for both. Itself is left out.
+    /// Calls `visit` for every grain filed not `farthest` away from `particle`, whose home is
+    /// `own`, that is nearer than `reach` and its own together, and for some that are farther
+    /// away: certainly not by more than the [error](Self::told_error) for both, or perhaps.
+    /// Itself is left out.
     #[inline]
     pub(super) fn for_each_in_reach(
         &self,
         particle: u32,
+        own: &Vector<D>,
         farthest: f64,
         reach: f64,
-        mut visit: impl FnMut(Link<D>),
+        mut visit: impl FnMut(Link<D>, bool),
     ) {
-        let own = self.spots[particle as usize].home;
         let farthest = farthest * SLACK;
         let around: [(i32, i32); D] =
             std::array::from_fn(|k| self.axes[k].cells_around(own[k], farthest));
@@ -302,10 +287,7 @@ impl<const D: usize> Cells<D> {
             .any(|(low, high)| high - low >= MOST_STEPS as i32)
         {
             return self.for_each_around(particle, around, |turns, other| {
-                let link = Link::new(other, Link::<D>::image_of(&turns));
-                if self.is_within(particle, link, reach) {
-                    visit(link);
-                }
+                visit(Link::new(other, Link::<D>::image_of(&turns)), false);
             });
         }
         // The cells within which everybody is found, along each axis.
@@ -339,9 +321,8 @@ impl<const D: usize> Cells<D> {
                 let image = image + step.image;
                 self.rooms
                     .near(row + step.row, &told, told_reach, |other, certain| {
-                        let link = Link::new(other, image);
-                        if other != particle && (certain || self.is_within(particle, link, reach)) {
-                            visit(link);
+                        if other != particle {
+                            visit(Link::new(other, image), certain);
                         }
                     });
             }
@@ -358,23 +339,15 @@ impl<const D: usize> Cells<D> {
         }
     }
 
-    /// Whether somebody is nearer than `reach` and its own together.
-    #[cold]
-    #[inline(never)]
-    fn is_within(&self, particle: u32, link: Link<D>, reach: f64) -> bool {
-        let both = reach + self.spot(link.particle()).reach;
-        self.apart(particle, link).norm_squared() < both * both
-    }
-
-    /// Calls `visit` for every other grain filed not `farthest` away from `particle`, and for
-    /// some that are farther away.
+    /// Calls `visit` for every other grain filed not `farthest` away from `particle`, whose
+    /// home is `own`, and for some that are farther away.
     pub(super) fn for_each_found(
         &self,
         particle: u32,
+        own: &Vector<D>,
         farthest: f64,
         mut visit: impl FnMut(Found<D>),
     ) {
-        let own = self.spots[particle as usize].home;
         let around: [(i32, i32); D] = std::array::from_fn(|k| {
             let axis = &self.axes[k];
             axis.cells_around(own[k], f64::min(farthest * SLACK, axis.farthest()))
@@ -428,13 +401,13 @@ impl<const D: usize> Cells<D> {
     /// Where its cell is in a list of all.
     #[inline]
     fn place_of(&self, particle: u32) -> usize {
-        self.seats[particle as usize].cell as usize
+        (self.seats[particle as usize] & !ELSEWHERE) as usize
     }
 
     /// Its cell along each axis.
     #[inline]
     fn cell_of(&self, particle: u32) -> [i32; D] {
-        let mut place = self.seats[particle as usize].cell;
+        let mut place = self.place_of(particle) as u32;
         std::array::from_fn(|k| {
             let count = self.axes[k].count as u32;
             let cell = place % count;
@@ -444,22 +417,15 @@ impl<const D: usize> Cells<D> {
     }
 
     /// A grain as the others in its cell know it.
-    fn guest(&self, particle: u32) -> Guest<D> {
-        let (cell, spot) = (self.cell_of(particle), &self.spots[particle as usize]);
+    fn guest(&self, particle: u32, home: &Vector<D>, reach: f64) -> Guest<D> {
+        let cell = self.cell_of(particle);
         let corner = Vector::from_fn(|k, _| self.axes[k].corner(cell[k]));
-        self.rooms.guest(&(spot.home - corner), spot.reach)
+        self.rooms.guest(&(home - corner), reach)
     }
 
-    fn link(&mut self, particle: u32) {
-        let (cell, guest) = (self.place_of(particle), self.guest(particle));
-        self.rooms.enter(cell, particle, &guest);
-    }
-
-    /// A grain is filed at another place in its cell, or reaches farther; false if it is
-    /// not found there.
-    fn relink(&mut self, particle: u32) -> bool {
-        let (cell, guest) = (self.place_of(particle), self.guest(particle));
-        self.rooms.shift(cell, particle, &guest)
+    fn link(&mut self, particle: u32, home: &Vector<D>, reach: f64) {
+        let guest = self.guest(particle, home, reach);
+        self.rooms.enter(self.place_of(particle), particle, &guest);
     }
 }
 

@@ -102,10 +102,13 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
         }
         self.queue.check_numbers()?;
         let scale = self.listed_scale();
-        let radius_of = |other: u32| scale * self.world.bodies[other as usize].radius;
+        let stored = |other: u32| {
+            let body = &self.world.bodies[other as usize];
+            (body.position, scale * body.radius)
+        };
         for particle in 0..count as u32 {
             self.check_grain(particle)?;
-            self.world.near.check_complete(particle, radius_of)?;
+            self.world.near.check_complete(particle, stored)?;
         }
         for alarm in &self.alarms {
             let key = alarm.0.key;

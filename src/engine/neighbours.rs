@@ -56,6 +56,10 @@ const ROUND: f64 = 1.0 - 1.0e-9;
 /// A grain's leash and list.
 #[derive(Clone, Debug)]
 struct Tie<const D: usize> {
+    /// The anchor, in the image that lies in the grid; in d.
+    home: Vector<D>,
+    /// How far from there its surface may be, in d.
+    reach: f64,
     leash: f64,
     /// Whether the long leash suits it.
     lonely: bool,
@@ -75,7 +79,6 @@ pub(super) struct Neighbours<const D: usize> {
     largest: f64,
     /// The long leash, in d.
     longest: f64,
-    periods: [f64; D],
     /// Room for a list in the making.
     fresh: Vec<Link<D>>,
     /// Who was not on the list made last before it was made, or is no longer on it.
@@ -91,11 +94,8 @@ impl<const D: usize> Neighbours<D> {
         Neighbours {
             cells: Cells::new(boundary, positions, EDGE * reach),
             longest: long * largest,
-            ties: Sparse::new(positions.len(), Tie::LOOSE),
+            ties: Sparse::new(positions.len(), Tie::loose()),
             largest,
-            periods: std::array::from_fn(|axis| {
-                boundary.period(axis).map_or(0.0, |period| period.length)
-            }),
             fresh: Vec::new(),
             changes: Changes::NONE,
         }
@@ -112,10 +112,10 @@ impl<const D: usize> Neighbours<D> {
         self.ties.push();
     }
 
-    /// Says how large a grain at rest may become as long as this grid serves, in
+    /// Says how large a grain without a list may become as long as this grid serves, in
     /// d.
-    pub(super) fn set_radius(&mut self, particle: u32, radius: f64) {
-        self.cells.set_reach(particle, radius);
+    pub(super) fn set_radius(&mut self, particle: u32, position: &Vector<D>, radius: f64) {
+        self.cells.refile(particle, position, radius);
     }
 
     /// Takes back the grain that was added last.
@@ -133,7 +133,6 @@ impl<const D: usize> Neighbours<D> {
     #[inline]
     pub(super) fn touch(&self, particle: u32) {
         black_box(self.ties[particle].leash);
-        black_box(self.cells.spot(particle).reach);
         black_box(self.cells.turns(particle)[0]);
     }
 
@@ -183,25 +182,14 @@ impl<const D: usize> Neighbours<D> {
     /// From the image of a grain in the grid to the one that is stored, in d.
     #[inline]
     pub(super) fn home_shift(&self, particle: u32) -> Vector<D> {
-        self.shift(self.cells.turns(particle))
+        self.cells.home_shift(particle)
     }
 
     /// What to add to the place of a grain in the grid to get the image of a
     /// link, in d.
     #[inline]
     pub(super) fn link_shift(&self, link: Link<D>) -> Vector<D> {
-        self.shift(Link::<D>::turns_of(link.image()))
-    }
-
-    #[inline]
-    fn shift(&self, turns: [i32; D]) -> Vector<D> {
-        let mut shift = Vector::zeros();
-        if turns != [0; D] {
-            for axis in 0..D {
-                shift[axis] = f64::from(turns[axis]) * self.periods[axis];
-            }
-        }
-        shift
+        self.cells.shift(Link::<D>::turns_of(link.image()))
     }
 
     /// From the image of a grain in the grid to the one that is stored, in
@@ -211,10 +199,21 @@ impl<const D: usize> Neighbours<D> {
         self.cells.turns(particle)
     }
 
-    /// The place that a grain is tied to, in the image it is stored in.
+    /// The place that a grain with a list is tied to, in the image it is stored in.
     #[inline]
     pub(super) fn anchor(&self, particle: u32) -> Vector<D> {
-        self.cells.anchor(particle)
+        self.ties[particle].home + self.home_shift(particle)
+    }
+
+    /// Where a grain is filed, in the image that lies in the grid, in d: at its anchor, or
+    /// where it is, in the image that is stored, if it has no list.
+    #[inline]
+    fn home(&self, particle: u32, stored: &Vector<D>) -> Vector<D> {
+        if self.ties.has(particle) {
+            self.ties[particle].home
+        } else {
+            stored - self.home_shift(particle)
+        }
     }
 
     /// Whether a position is so far outside that a grain there has escaped.
@@ -244,17 +243,17 @@ impl<const D: usize> Neighbours<D> {
         ROUND * self.ties[particle].leash
     }
 
-    /// How far from its anchor a grain with a list, or one at rest, reaches as long
-    /// as this grid serves, in d.
+    /// How far from its anchor a grain with a list reaches as long as this grid serves,
+    /// in d.
     pub(super) fn reach(&self, particle: u32) -> f64 {
-        self.cells.spot(particle).reach
+        self.ties[particle].reach
     }
 
-    /// How far a grain may still move from `position`, in d; negative if too
+    /// How far a grain with a list may still move from `position`, in d; negative if too
     /// far already.
+    #[inline]
     pub(super) fn slack(&self, particle: u32, position: &Vector<D>) -> f64 {
-        let tie = &self.ties[particle];
-        ROUND * tie.leash - (position - self.anchor(particle)).norm_squared().sqrt()
+        self.leash(particle) - (position - self.anchor(particle)).norm_squared().sqrt()
     }
 
     /// Whether little enough slack is left to make the list anew.
@@ -264,7 +263,8 @@ impl<const D: usize> Neighbours<D> {
 
     /// Ties a moving grain to an anchor a little ahead of it and makes its list
     /// anew. Something happens to it in `wait`, in √(d/g); `radius` is its largest as long
-    /// as this grid serves, in d.
+    /// as this grid serves, in d. `untied` says where somebody without a list is, as it is
+    /// stored, and its largest radius.
     pub(super) fn tie(
         &mut self,
         particle: u32,
@@ -272,9 +272,10 @@ impl<const D: usize> Neighbours<D> {
         velocity: &Vector<D>,
         wait: f64,
         radius: f64,
+        untied: impl Fn(u32) -> (Vector<D>, f64),
     ) {
         if !self.ties.has(particle) {
-            self.forget_at_rest(particle);
+            self.forget_at_rest(particle, position);
         }
         let speed = velocity.norm_squared().sqrt();
         let short = SHORT_LEASH * self.largest;
@@ -292,8 +293,9 @@ impl<const D: usize> Neighbours<D> {
                 0.0
             };
             let anchor = position + velocity * ahead;
-            self.cells.refile(particle, &anchor, radius + leash);
-            self.gather(particle, &mut list);
+            tie.reach = radius + leash;
+            tie.home = self.cells.refile(particle, &anchor, tie.reach);
+            self.gather(particle, &untied, &mut list);
             let tie = self.ties.make(particle);
             if leash > short && list.len() > MANY {
                 tie.lonely = false;
@@ -335,7 +337,7 @@ impl<const D: usize> Neighbours<D> {
         let list = tied.map_or_else(Vec::new, |tie| std::mem::take(&mut tie.list));
         self.ties.clear(particle);
         let before = self.cells.turns(particle);
-        self.cells.refile(particle, position, radius);
+        let home = self.cells.refile(particle, position, radius);
         let after = self.cells.turns(particle);
         for other in list {
             let Some(theirs) = self.ties.own(other.particle()) else {
@@ -348,7 +350,7 @@ impl<const D: usize> Neighbours<D> {
                 turns[axis] += before[axis] - after[axis];
             }
             let link = Link::new(other.particle(), Link::<D>::image_of(&turns));
-            let apart = self.cells.apart(particle, link);
+            let apart = theirs.home - home + self.cells.shift(turns);
             let reach = self.largest + theirs.leash;
             let within = apart.norm_squared() < reach * reach;
             if !within || link != other {
@@ -366,23 +368,25 @@ impl<const D: usize> Neighbours<D> {
     }
 
     /// Calls `visit` for every grain whose centre may be nearer to that of
-    /// `particle` than `distance`, in d, and for some that are not; itself left
-    /// out.
+    /// `particle`, which is at `position`, than `distance`, in d, and for some that are not;
+    /// itself left out.
     pub(super) fn for_each_within(
         &self,
         particle: u32,
+        position: &Vector<D>,
         distance: f64,
         mut visit: impl FnMut(Found<D>),
     ) {
+        let home = self.home(particle, position);
         let reach = self.spread(particle, distance);
+        let farthest = reach + self.longest;
         if reach <= 2.0 * (self.largest + self.longest) {
             self.cells
-                .for_each_in_reach(particle, reach + self.longest, reach, |link| {
+                .for_each_in_reach(particle, &home, farthest, reach, |link, _| {
                     visit(self.cells.found(particle, link));
                 });
         } else {
-            self.cells
-                .for_each_found(particle, reach + self.longest, visit);
+            self.cells.for_each_found(particle, &home, farthest, visit);
         }
     }
 
@@ -399,30 +403,66 @@ impl<const D: usize> Neighbours<D> {
 
     /// Lists everybody whose anchor is near enough to that of `particle`.
     #[inline(never)]
-    fn gather(&self, particle: u32, list: &mut Vec<Link<D>>) {
+    fn gather(
+        &self,
+        particle: u32,
+        untied: &impl Fn(u32) -> (Vector<D>, f64),
+        list: &mut Vec<Link<D>>,
+    ) {
         list.clear();
-        let own = self.cells.spot(particle).reach;
-        let farthest = own + 0.5 * self.largest + self.longest;
+        let Tie { home, reach, .. } = &self.ties[particle];
+        let farthest = reach + 0.5 * self.largest + self.longest;
         self.cells
-            .for_each_in_reach(particle, farthest, own, |link| list.push(link));
-    }
-
-    /// Takes a grain that is at rest off the lists of all others: only they know
-    /// who lists it.
-    fn forget_at_rest(&mut self, particle: u32) {
-        let mut partners = Vec::new();
-        let farthest = self.largest + self.longest;
-        let told = self.cells.told_error(farthest);
-        self.cells
-            .for_each_in_reach(particle, farthest + told, farthest + told, |link| {
-                let leash = self.ties[link.particle()].leash;
-                // Farther off than this it is on nobody's list, see `release`.
-                let reach = self.largest + leash + told;
-                let apart = self.cells.apart(particle, link).norm_squared();
-                if leash > 0.0 && apart * ROUND < reach * reach {
-                    partners.push(link);
+            .for_each_in_reach(particle, home, farthest, *reach, |link, certain| {
+                if certain || self.is_within(home, *reach, link, untied) {
+                    list.push(link);
                 }
             });
+    }
+
+    /// Whether somebody is nearer to a place in the grid than `reach` and its own together.
+    #[cold]
+    #[inline(never)]
+    fn is_within(
+        &self,
+        home: &Vector<D>,
+        reach: f64,
+        link: Link<D>,
+        untied: &impl Fn(u32) -> (Vector<D>, f64),
+    ) -> bool {
+        let other = link.particle();
+        let (there, theirs) = if self.ties.has(other) {
+            (self.ties[other].home, self.ties[other].reach)
+        } else {
+            let (stored, radius) = untied(other);
+            (self.home(other, &stored), radius)
+        };
+        let both = reach + theirs;
+        (there - home + self.link_shift(link)).norm_squared() < both * both
+    }
+
+    /// Takes a grain that is at rest, at `position`, off the lists of all others: only they
+    /// know who lists it.
+    fn forget_at_rest(&mut self, particle: u32, position: &Vector<D>) {
+        let mut partners = Vec::new();
+        let home = self.home(particle, position);
+        let farthest = self.largest + self.longest;
+        let told = self.cells.told_error(farthest);
+        self.cells.for_each_in_reach(
+            particle,
+            &home,
+            farthest + told,
+            farthest + told,
+            |link, _| {
+                let theirs = &self.ties[link.particle()];
+                // Farther off than this it is on nobody's list, see `release`.
+                let reach = self.largest + theirs.leash + told;
+                let apart = theirs.home - home + self.link_shift(link);
+                if theirs.leash > 0.0 && apart.norm_squared() * ROUND < reach * reach {
+                    partners.push(link);
+                }
+            },
+        );
         for link in partners {
             if let Some(tie) = self.ties.own(link.particle()) {
                 tie.forget(link.seen_from(particle));
@@ -447,11 +487,15 @@ fn leash_for(crowding: f64, dimension: usize) -> f64 {
 
 impl<const D: usize> Tie<D> {
     /// At rest.
-    const LOOSE: Tie<D> = Tie {
-        leash: 0.0,
-        lonely: true,
-        list: Vec::new(),
-        bed: None,
-        divided: false,
-    };
+    fn loose() -> Self {
+        Tie {
+            home: Vector::zeros(),
+            reach: 0.0,
+            leash: 0.0,
+            lonely: true,
+            list: Vec::new(),
+            bed: None,
+            divided: false,
+        }
+    }
 }

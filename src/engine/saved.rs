@@ -136,11 +136,13 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
         check_parts(&model, &saved.settings)?;
         saved.check(&model)?;
         let count = saved.bodies.len();
-        let radius_of = |largest: f64, id: u32| {
-            listed_scale::<M, D>(largest, saved.largest) * saved.bodies[id as usize].radius
+        let stored = |largest: f64, id: u32| {
+            let body = &saved.bodies[id as usize];
+            let scale = listed_scale::<M, D>(largest, saved.largest);
+            (body.position, scale * body.radius)
         };
         let near =
-            Neighbours::restore(model.boundary(), &saved.near, count, radius_of).map_err(wrong)?;
+            Neighbours::restore(model.boundary(), &saved.near, count, stored).map_err(wrong)?;
         let mut modes = ModeCounts::default();
         let mut bodies = saved.bodies;
         for (id, body) in bodies.iter_mut().enumerate() {

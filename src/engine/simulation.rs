@@ -158,9 +158,9 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
             .collect();
         self.world.near = Neighbours::new(self.model.boundary(), &positions, largest);
         let scale = self.listed_scale();
-        for particle in 0..count {
+        for (particle, position) in (0..).zip(&positions) {
             let radius = scale * self.world.bodies[particle as usize].radius;
-            self.world.near.set_radius(particle, radius);
+            self.world.near.set_radius(particle, position, radius);
         }
         self.begin_epoch();
         for particle in 0..count {
@@ -220,6 +220,11 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
             &flight.velocity(after),
             self.slots[particle].bound() - *clock,
             scale * body.radius,
+            |other| {
+                let body = &bodies[other as usize];
+                let flight = flight_of(&self.model, other, body);
+                (flight.position(*clock - body.since), scale * body.radius)
+            },
         );
         if loose || near.turns(particle) != image {
             self.world.glance(&self.model, particle);

@@ -1,6 +1,7 @@
 //! Whether the grid's book-keeping holds.
 
 use crate::engine::cells::Cells;
+use crate::particle::Vector;
 
 /// How far beyond the edge of its cell, over that edge, rounding may put a
 /// grain: periods are taken off its place and off its cell separately.
@@ -12,10 +13,13 @@ impl<const D: usize> Cells<D> {
         self.rooms.holds(self.place_of(particle), particle)
     }
 
-    /// A grain has to sit in the cell of its anchor, and in that cell's room.
-    pub(in crate::engine) fn check_seat(&self, particle: u32) -> Result<(), String> {
+    /// A grain has to sit in the cell of its home, and in that cell's room.
+    pub(in crate::engine) fn check_seat(
+        &self,
+        particle: u32,
+        home: &Vector<D>,
+    ) -> Result<(), String> {
         let cell = self.cell_of(particle);
-        let home = &self.spots[particle as usize].home;
         for axis in 0..D {
             let this = &self.axes[axis];
             let cell = f64::from(cell[axis]);

@@ -63,6 +63,13 @@ impl<const D: usize> Block<D> {
         })
     }
 
+    fn guest(&self, lane: usize) -> Guest<D> {
+        Guest {
+            place: std::array::from_fn(|axis| self.places[axis][lane]),
+            reach: self.reaches[lane],
+        }
+    }
+
     fn put(&mut self, lane: usize, particle: u32, guest: &Guest<D>) {
         self.ids[lane] = particle;
         self.reaches[lane] = guest.reach;
@@ -82,9 +89,26 @@ impl<const D: usize> Rooms<D> {
         }
     }
 
-    /// As many cells of the same kind, with nobody in them.
-    pub(super) fn emptied(&self) -> Self {
-        Rooms::new(self.heads.len(), self.edge)
+    /// The same cells without some of the grains, and the room that those had.
+    pub(super) fn without(&self, left_out: impl Fn(u32) -> bool) -> Self {
+        let mut rooms = Rooms::new(self.heads.len(), self.edge);
+        let mut chain = Vec::new();
+        for (cell, &head) in self.heads.iter().enumerate() {
+            let mut block = head;
+            while block != NONE {
+                let this = &self.blocks[block as usize];
+                chain.push(this);
+                block = this.next;
+            }
+            for block in chain.drain(..).rev() {
+                for (lane, &id) in block.ids.iter().enumerate() {
+                    if id != NONE && !left_out(id) {
+                        rooms.enter(cell, id, &block.guest(lane));
+                    }
+                }
+            }
+        }
+        rooms
     }
 
     /// A place from the corner of a cell; what is too far away to be told is near
@@ -247,10 +271,7 @@ impl<const D: usize> Rooms<D> {
         let vacant = first.ids.iter().position(|id| *id == NONE);
         let last = vacant.unwrap_or(LANES) - 1;
         let moved = first.ids[last];
-        let guest = Guest {
-            place: std::array::from_fn(|axis| first.places[axis][last]),
-            reach: first.reaches[last],
-        };
+        let guest = first.guest(last);
         let nobody = Guest {
             place: [NOWHERE; D],
             reach: 0.0,

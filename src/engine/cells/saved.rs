@@ -4,7 +4,8 @@
 use nalgebra::SVector;
 use serde::{Deserialize, Serialize};
 
-use crate::engine::cells::{Axis, Cells, Rooms, Seat, Spot, longest, most_cells};
+use crate::engine::cells::{Axis, Cells, Rooms, longest, most_cells};
+use crate::engine::sparse::Sparse;
 use crate::model::Boundary;
 use crate::particle::Vector;
 
@@ -31,17 +32,16 @@ impl<const D: usize> Cells<D> {
                 .iter()
                 .map(|axis| (axis.origin, axis.edge, axis.count))
                 .collect(),
-            cells: self
-                .seats
-                .iter()
-                .map(|seat| (seat.cell, SVector::from(seat.turns)))
+            cells: (0..)
+                .zip(&self.seats)
+                .map(|(id, _)| (self.place_of(id) as u32, SVector::from(self.turns(id))))
                 .collect(),
             order: self.rooms.all(),
         }
     }
 
-    /// The grid of `count` grains that was saved; where exactly in their cells
-    /// they are filed has still to be [said](Cells::file_at).
+    /// The grid of `count` grains that was saved. `spot` says where a grain is filed, in
+    /// the image that lies in the grid, and how far it reaches from there, in d.
     ///
     /// # Errors
     ///
@@ -50,6 +50,7 @@ impl<const D: usize> Cells<D> {
         boundary: &B,
         saved: &SavedCells<D>,
         count: usize,
+        spot: impl Fn(&Self, u32) -> (Vector<D>, f64),
     ) -> Result<Self, &'static str> {
         if saved.axes.len() != D || saved.cells.len() != count || saved.order.len() > count {
             return Err("the grid is not for these grains");
@@ -72,43 +73,27 @@ impl<const D: usize> Cells<D> {
                 .ok_or("the grid has too many cells")?;
         }
         let axes = <[Axis; D]>::try_from(axes).map_err(|_| "the grid has too few axes")?;
-        let mut seats = Vec::with_capacity(count);
-        for (cell, turns) in &saved.cells {
-            if *cell as usize >= stride || turns.iter().any(|turns| turns.abs_diff(0) > FARTHEST) {
-                return Err("a grain lies in no cell");
-            }
-            seats.push(Seat {
-                cell: *cell,
-                turns: (*turns).into(),
-            });
-        }
         let mut cells = Cells {
             axes,
             rooms: Rooms::new(stride, longest(&axes)),
-            spots: vec![
-                Spot {
-                    home: Vector::zeros(),
-                    reach: 0.0,
-                };
-                count
-            ],
-            seats,
+            seats: vec![0; count],
+            turns: Sparse::new(count, [0; D]),
         };
+        for (particle, (cell, turns)) in (0..).zip(&saved.cells) {
+            if *cell as usize >= stride || turns.iter().any(|turns| turns.abs_diff(0) > FARTHEST) {
+                return Err("a grain lies in no cell");
+            }
+            cells.seat(particle, *cell, (*turns).into());
+        }
         let mut seated = vec![false; count];
         for &particle in &saved.order {
             match seated.get_mut(particle as usize) {
                 Some(seated) if !*seated => *seated = true,
                 _ => return Err("a grain is seated twice"),
             }
-            cells.link(particle);
+            let (home, reach) = spot(&cells, particle);
+            cells.link(particle, &home, reach);
         }
         Ok(cells)
-    }
-
-    /// Says where a grain is filed.
-    pub(in crate::engine) fn file_at(&mut self, particle: u32, home: &Vector<D>, reach: f64) {
-        let home = *home;
-        self.spots[particle as usize] = Spot { home, reach };
-        self.relink(particle);
     }
 }

@@ -38,26 +38,36 @@ fn check<const D: usize>(
     let inside = |place: &[f64]| Vector::<D>::from_fn(|axis, _| place[axis] * sides[axis].0);
     let places: Vec<_> = grains.iter().map(|(place, ..)| inside(place)).collect();
     let mut cells = Cells::new(&boundary, &places, edge);
+    let mut spots = Vec::new();
     for (particle, (place, outside, reach)) in (0..).zip(&grains) {
         let mut place = inside(place);
         for axis in 0..D {
             // Also along periodic ones: it is filed in its image.
             place[axis] += outside[axis];
         }
-        cells.refile(particle, &place, *reach);
+        spots.push((cells.refile(particle, &place, *reach), *reach));
     }
     let periodic = |axis: usize| i32::from(sides[axis].1);
     let low: [i32; D] = std::array::from_fn(|axis| -IMAGES * periodic(axis));
     let count = grains.len() as u32;
     for particle in 0..count {
-        let own = cells.spot(particle).reach;
+        let (home, own) = spots[particle as usize];
+        let apart = |link: Link<D>| {
+            let (there, _) = spots[link.particle() as usize];
+            there - home + cells.shift(Link::<D>::turns_of(link.image()))
+        };
         let mut found = Vec::new();
-        cells.for_each_in_reach(particle, farthest, own, |link| found.push(link));
+        cells.for_each_in_reach(particle, &home, farthest, own, |link, certain| {
+            let (_, theirs) = spots[link.particle() as usize];
+            if certain || apart(link).norm() < own + theirs {
+                found.push(link);
+            }
+        });
         for other in (0..count).filter(|other| *other != particle) {
             for_each_turns(low, low.map(|turns| -turns), |turns| {
                 let link = Link::<D>::new(other, Link::<D>::image_of(&turns));
-                let apart = cells.apart(particle, link).norm();
-                let both = own + cells.spot(other).reach;
+                let apart = apart(link).norm();
+                let both = own + spots[other as usize].1;
                 let times = found.iter().filter(|named| **named == link).count();
                 assert!(times <= 1, "{link:?} is found twice");
                 assert!(
@@ -71,14 +81,14 @@ fn check<const D: usize>(
             });
         }
         let mut everybody = Vec::new();
-        cells.for_each_found(particle, f64::INFINITY, |other| {
+        cells.for_each_found(particle, &home, f64::INFINITY, |other| {
             everybody.push(other.particle)
         });
         everybody.sort_unstable();
         everybody.dedup();
         prop_assert_eq!(everybody.len() as u32, count - 1);
         let mut near = Vec::new();
-        cells.for_each_found(particle, farthest, |other| near.push(other));
+        cells.for_each_found(particle, &home, farthest, |other| near.push(other));
         for link in found {
             let known = near.contains(&cells.found(particle, link));
             prop_assert!(known || farthest < own + 1.2, "{:?} is not near", link);

@@ -36,13 +36,20 @@ impl<const D: usize> Bed<D> {
         list: &[Link<D>],
         place: &Vector<D>,
         radius: f64,
-        periods: &[f64; D],
         cells: &Cells<D>,
         bodies: &[Body<D>],
     ) {
         self.resting.clear();
         self.still.clear();
         self.movers.clear();
+        // No more room than it takes: there are many beds.
+        let still = list
+            .iter()
+            .filter(|link| bodies[link.particle() as usize].still);
+        let still = still.count();
+        self.resting.reserve_exact(still.div_ceil(LANES));
+        self.still.reserve_exact(still);
+        self.movers.reserve_exact(list.len() - still);
         for link in list {
             let body = &bodies[link.particle() as usize];
             if !body.still {
@@ -58,12 +65,11 @@ impl<const D: usize> Bed<D> {
             }
             self.still.push(*link);
             // Those at rest are filed where they are.
-            let home = &cells.spot(link.particle()).home;
-            let turns = Link::<D>::turns_of(link.image());
+            let home = body.position - cells.home_shift(link.particle());
+            let image = cells.shift(Link::<D>::turns_of(link.image()));
             if let Some(last) = self.resting.last_mut() {
                 for axis in 0..D {
-                    let image = f64::from(turns[axis]) * periods[axis];
-                    last.places[axis][lane] = (home[axis] - place[axis]) + image;
+                    last.places[axis][lane] = (home[axis] - place[axis]) + image[axis];
                 }
                 last.distances[lane] = radius + body.radius;
             }
@@ -111,13 +117,12 @@ impl<const D: usize> Tie<D> {
 
     /// Divides the list into those at rest, if there are any, and the others.
     #[inline(never)]
-    fn divide(&mut self, particle: u32, periods: &[f64; D], cells: &Cells<D>, bodies: &[Body<D>]) {
+    fn divide(&mut self, particle: u32, cells: &Cells<D>, bodies: &[Body<D>]) {
         let is_still = |link: &Link<D>| bodies[link.particle() as usize].still;
         if self.list.iter().any(is_still) {
             let radius = bodies[particle as usize].radius;
-            let place = &cells.spot(particle).home;
             let bed = self.bed.get_or_insert_with(|| Box::new(Bed::EMPTY));
-            bed.make(&self.list, place, radius, periods, cells, bodies);
+            bed.make(&self.list, &self.home, radius, cells, bodies);
         } else {
             self.bed = None;
         }
@@ -146,7 +151,7 @@ impl<const D: usize> Neighbours<D> {
             && !tie.divided
         {
             if anybody_rests {
-                tie.divide(particle, &self.periods, &self.cells, bodies);
+                tie.divide(particle, &self.cells, bodies);
             } else {
                 tie.bed = None;
                 tie.divided = true;
@@ -181,8 +186,9 @@ impl<const D: usize> Neighbours<D> {
             let found = self.found(particle, *link);
             let body = &bodies[found.particle as usize];
             let (few, lane) = (&bed.resting[place / LANES], place % LANES);
+            let images = self.cells.shift(found.turns);
             for axis in 0..D {
-                let image = f64::from(found.turns[axis]) * self.periods[axis];
+                let image = images[axis];
                 let apart = body.position[axis] + image - self.anchor(particle)[axis];
                 let rounding = 1.0e-12 * (body.position[axis].abs() + image.abs() + 1.0);
                 if !body.still || (apart - few.places[axis][lane]).abs() > rounding {

@@ -14,7 +14,7 @@ impl<const D: usize> Neighbours<D> {
         self.cells.is_found(particle)
     }
 
-    /// A grain that is now at `position` has to be on its leash, in its cell,
+    /// A grain that is now at `position` has to be in its cell, on its leash if it has one,
     /// and on the list of everybody on its own.
     pub(in crate::engine) fn check_tie(
         &self,
@@ -22,7 +22,11 @@ impl<const D: usize> Neighbours<D> {
         position: &Vector<D>,
     ) -> Result<(), String> {
         let tie = &self.ties[particle];
-        self.cells.check_seat(particle)?;
+        self.cells
+            .check_seat(particle, &self.home(particle, position))?;
+        if !self.is_tied(particle) {
+            return Ok(());
+        }
         let strayed = (position - self.anchor(particle)).norm();
         // Rounding of the place itself, far from the origin.
         let rounding = 1.0e-12 * (self.largest + position.norm());
@@ -54,7 +58,7 @@ impl<const D: usize> Neighbours<D> {
     pub(in crate::engine) fn check_complete(
         &self,
         particle: u32,
-        radius_of: impl Fn(u32) -> f64,
+        stored: impl Fn(u32) -> (Vector<D>, f64),
     ) -> Result<(), String> {
         let tie = &self.ties[particle];
         if tie.leash == 0.0 {
@@ -64,9 +68,9 @@ impl<const D: usize> Neighbours<D> {
             if other == particle || !self.is_found(other) {
                 continue;
             }
-            let home = |id: u32| self.cells.spot(id).home;
-            let apart = home(other) - home(particle);
-            let contact = radius_of(particle) + radius_of(other);
+            let ((_, own), (there, theirs)) = (stored(particle), stored(other));
+            let apart = self.home(other, &there) - tie.home;
+            let contact = own + theirs;
             let reach = ROUND * (contact + tie.leash + self.ties[other].leash);
             let mut absent = None;
             self.for_each_image(&apart, reach, |turns| {
@@ -88,8 +92,9 @@ impl<const D: usize> Neighbours<D> {
     fn for_each_image(&self, apart: &Vector<D>, reach: f64, mut visit: impl FnMut([i32; D])) {
         let mut low = [0; D];
         let mut high = [0; D];
+        let periods = self.cells.shift([1; D]);
         for axis in 0..D {
-            let period = self.periods[axis];
+            let period = periods[axis];
             if period > 0.0 {
                 low[axis] = libm::ceil((-reach - apart[axis]) / period) as i32;
                 high[axis] = libm::floor((reach - apart[axis]) / period) as i32;
@@ -98,9 +103,7 @@ impl<const D: usize> Neighbours<D> {
             }
         }
         for_each_turns(low, high, |turns| {
-            let image: Vector<D> = Vector::from_fn(|axis, _| {
-                apart[axis] + f64::from(turns[axis]) * self.periods[axis]
-            });
+            let image = apart + self.cells.shift(turns);
             if image.norm_squared() < reach * reach {
                 visit(turns);
             }
@@ -124,8 +127,6 @@ impl<const D: usize> Neighbours<D> {
 
     /// Plants a fault: a grain is filed in another cell than its own.
     pub(in crate::engine) fn misfile(&mut self, particle: u32, position: &Vector<D>) {
-        let spot = *self.cells.spot(particle);
-        self.cells.refile(particle, position, spot.reach);
-        self.cells.file_at(particle, &spot.home, spot.reach);
+        self.cells.refile(particle, position, self.reach(particle));
     }
 }

@@ -13,7 +13,8 @@ use crate::particle::Vector;
 #[serde(bound = "")]
 pub(in crate::engine) struct SavedNeighbours<const D: usize> {
     cells: SavedCells<D>,
-    ties: Vec<SavedTie<D>>,
+    /// Of those that have a list.
+    ties: Vec<(u32, SavedTie<D>)>,
     largest: f64,
     longest: f64,
 }
@@ -30,26 +31,26 @@ struct SavedTie<const D: usize> {
 
 impl<const D: usize> Neighbours<D> {
     pub(in crate::engine) fn save(&self) -> SavedNeighbours<D> {
-        let of = |particle: u32| {
-            let tie = &self.ties[particle];
+        let of = |(particle, tie): (u32, &Tie<D>)| {
             let named = |link: &Link<D>| (link.particle(), link.image());
-            SavedTie {
-                home: self.cells.spot(particle).home,
+            let saved = SavedTie {
+                home: tie.home,
                 leash: tie.leash,
                 lonely: tie.lonely,
                 list: tie.list.iter().map(named).collect(),
-            }
+            };
+            (particle, saved)
         };
         SavedNeighbours {
             cells: self.cells.save(),
-            ties: (0..self.ties.len() as u32).map(of).collect(),
+            ties: self.ties.each().map(of).collect(),
             largest: self.largest,
             longest: self.longest,
         }
     }
 
-    /// The lists of `count` grains that were saved. `radius_of` gives their
-    /// radii, in d, on a grid for this largest diameter.
+    /// The lists of `count` grains that were saved. `stored` says where they are stored, and
+    /// their radii on a grid for this largest diameter, in d.
     ///
     /// # Errors
     ///
@@ -58,15 +59,19 @@ impl<const D: usize> Neighbours<D> {
         boundary: &B,
         saved: &SavedNeighbours<D>,
         count: usize,
-        radius_of: impl Fn(f64, u32) -> f64,
+        stored: impl Fn(f64, u32) -> (Vector<D>, f64),
     ) -> Result<Self, &'static str> {
         let positive = |length: f64| length > 0.0 && length.is_finite();
-        if saved.ties.len() != count || !positive(saved.largest) || !positive(saved.longest) {
+        if !positive(saved.largest) || !positive(saved.longest) {
             return Err("the lists are not those of these grains");
         }
-        let mut ties = Sparse::new(count, Tie::LOOSE);
-        for (particle, tie) in (0..).zip(&saved.ties) {
-            if !(0.0..=saved.longest).contains(&tie.leash)
+        let mut ties = Sparse::new(count, Tie::loose());
+        for (particle, tie) in &saved.ties {
+            let particle = *particle;
+            if particle as usize >= count || ties.has(particle) {
+                return Err("a list belongs to nobody, or to somebody who has one");
+            }
+            if !(positive(tie.leash) && tie.leash <= saved.longest)
                 || tie.home.iter().any(|x| !x.is_finite())
             {
                 return Err("a leash has a length that none has");
@@ -79,30 +84,29 @@ impl<const D: usize> Neighbours<D> {
                 }
                 list.push(Link::new(other, image));
             }
-            if tie.leash > 0.0 {
-                *ties.make(particle) = Tie {
-                    leash: tie.leash,
-                    lonely: tie.lonely,
-                    list,
-                    ..Tie::LOOSE
-                };
-            } else if !list.is_empty() {
-                return Err("a grain at rest has a list");
+            let (_, radius) = stored(saved.largest, particle);
+            *ties.make(particle) = Tie {
+                home: tie.home,
+                reach: radius + tie.leash,
+                leash: tie.leash,
+                lonely: tie.lonely,
+                list,
+                ..Tie::loose()
+            };
+        }
+        let cells = Cells::restore(boundary, &saved.cells, count, |cells, particle| {
+            if ties.has(particle) {
+                (ties[particle].home, ties[particle].reach)
+            } else {
+                let (stored, radius) = stored(saved.largest, particle);
+                (stored - cells.home_shift(particle), radius)
             }
-        }
-        let mut cells = Cells::restore(boundary, &saved.cells, count)?;
-        for (particle, tie) in (0..).zip(&saved.ties) {
-            let reach = radius_of(saved.largest, particle) + tie.leash;
-            cells.file_at(particle, &tie.home, reach);
-        }
+        })?;
         let neighbours = Neighbours {
             cells,
             ties,
             largest: saved.largest,
             longest: saved.longest,
-            periods: std::array::from_fn(|axis| {
-                boundary.period(axis).map_or(0.0, |period| period.length)
-            }),
             fresh: Vec::new(),
             changes: Changes::NONE,
         };
