@@ -90,7 +90,7 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
         black_box(self.world.bodies[place].stamp);
         if const { !needs_drop::<MemoryOf<M, D>>() } {
             // Owns nothing, so a copy costs no more than reading it.
-            black_box(self.memories[place].clone());
+            black_box(self.memories[particle].clone());
         }
         self.world.glances.touch(particle);
         self.world.near.touch(particle);

@@ -56,7 +56,7 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
                     model: &self.model,
                     world: &self.world,
                 };
-                let struck = &self.memories[b as usize];
+                let struck = &self.memories[b];
                 let policy = self.model.state_policy();
                 let decision = policy.should_wake(&impact, &near, struck);
                 match decision {
@@ -322,7 +322,7 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
             model: &self.model,
             world: &self.world,
         };
-        let memory = &mut self.memories[particle as usize];
+        let memory = self.memories.make(particle);
         let policy = self.model.state_policy();
         match policy.should_sleep(impact, after, &near, memory) {
             SleepDecision::Stay(reason) => {

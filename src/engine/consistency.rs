@@ -187,7 +187,7 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
         };
         let policy = self.model.state_policy();
         policy
-            .check_memory(ParticleId(particle), &near, &self.memories[index])
+            .check_memory(ParticleId(particle), &near, &self.memories[particle])
             .map_err(|fault| format!("grain {particle}: {fault}"))
     }
 }

@@ -309,7 +309,7 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
                 model: &self.model,
                 world: &self.world,
             },
-            &mut self.memories[sleeper as usize],
+            self.memories.make(sleeper),
             &mut self.commands,
         );
         self.schedule();

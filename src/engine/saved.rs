@@ -46,7 +46,8 @@ pub struct Saved<R, E, S, const D: usize> {
     settings: Settings,
     clock: Time,
     bodies: Vec<Body<D>>,
-    memories: Vec<R>,
+    /// Of those of whom the policy has not forgotten all, in order.
+    memories: Vec<(u32, R)>,
     spins: Vec<S>,
     /// Of those who have something ahead of them, in order.
     slots: Vec<(u32, Slot)>,
@@ -103,7 +104,7 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
             settings: self.settings,
             clock: self.world.clock,
             bodies: self.world.bodies.clone(),
-            memories: self.memories.clone(),
+            memories: self.memories.save(),
             spins: self.spins.clone(),
             slots: self.slots.save(),
             alarms,
@@ -151,6 +152,8 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
             body.still = body.mode.is_static() && flight.is_at_rest();
         }
         let slots = Sparse::restore(saved.slots, count, Slot::EMPTY).map_err(wrong)?;
+        let memories =
+            Sparse::restore(saved.memories, count, MemoryOf::<M, D>::default()).map_err(wrong)?;
         let mut queue = EventQueue::new(count, saved.clock);
         for id in 0..count as u32 {
             queue.push_empty();
@@ -170,7 +173,7 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
                 aloft: Aloft::nobody(),
             },
             epoch_events: saved.epoch_events,
-            memories: saved.memories,
+            memories,
             spins: saved.spins,
             slots,
             queue,
@@ -220,8 +223,7 @@ impl<R, E, S, const D: usize> Saved<R, E, S, D> {
         if count > i32::MAX as usize {
             return Err(wrong("more grains than can be named"));
         }
-        let lengths = [self.memories.len(), self.spins.len()];
-        if lengths != [count; 2] {
+        if self.spins.len() != count {
             return Err(wrong("something is there for some grains only"));
         }
         if !self.clock.is_finite() || self.clock < self.settings.start {

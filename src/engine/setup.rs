@@ -95,7 +95,7 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
                 aloft: Aloft::nobody(),
             },
             epoch_events: 0,
-            memories: Vec::new(),
+            memories: Sparse::new(0, MemoryOf::<M, D>::default()),
             spins: vec![SpinOf::<M, D>::default(); count],
             slots: Sparse::new(count, Slot::EMPTY),
             queue: EventQueue::new(count, settings.start),
@@ -126,7 +126,7 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
         }
         simulation.lift_off();
         // Not before: the grid has just given much room back.
-        simulation.memories = vec![MemoryOf::<M, D>::default(); count];
+        simulation.memories = Sparse::new(count, MemoryOf::<M, D>::default());
         for particle in 0..count as u32 {
             simulation.tell_started(particle);
         }
@@ -163,7 +163,7 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
         let position = self.world.bodies[index as usize].position;
         self.world.near.add(position);
         self.world.glances.add();
-        self.memories.push(MemoryOf::<M, D>::default());
+        self.memories.push();
         self.spins.push(SpinOf::<M, D>::default());
         self.slots.push();
         if let Err(error) = self.refuse_contacts(index) {

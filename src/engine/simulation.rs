@@ -27,7 +27,7 @@ pub struct Simulation<M: Model<D>, const D: usize> {
     pub(super) model: M,
     pub(super) settings: Settings,
     pub(super) world: World<D>,
-    pub(super) memories: Vec<MemoryOf<M, D>>,
+    pub(super) memories: Sparse<MemoryOf<M, D>>,
     pub(super) spins: Vec<SpinOf<M, D>>,
     pub(super) slots: Sparse<Slot>,
     pub(super) queue: EventQueue,
@@ -107,14 +107,15 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
             .collect()
     }
 
-    /// What the policy remembers of a grain.
+    /// What the policy remembers of a grain; the default, where that would do as well
+    /// ([`StatePolicy::may_forget`](crate::model::StatePolicy::may_forget)).
     ///
     /// # Panics
     ///
     /// If there is no such grain.
     #[must_use]
     pub fn memory(&self, id: ParticleId) -> &MemoryOf<M, D> {
-        &self.memories[id.index()]
+        &self.memories[id.0]
     }
 
     /// The deepest overlap of two grains, in d, found at any event so far: of those
@@ -177,6 +178,7 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
         let bodies = &self.world.bodies;
         let sleeps = |particle: u32| bodies[particle as usize].mode == Mode::Frozen;
         self.traces.tidy(self.world.clock, sleeps);
+        self.tidy_memories();
         for (particle, slot) in self.slots.each() {
             self.world.glances.set_bound(particle, slot.bound());
         }

@@ -10,8 +10,8 @@ use crate::engine::queue::{Key, Rank};
 use crate::engine::simulation::Simulation;
 use crate::engine::view::View;
 use crate::model::{
-    Dynamics, EventOf, Flight, Model, Observer, Occurrence, OccurrenceKind, Reason, Response,
-    StatePolicy, WakeCause, Waking,
+    Dynamics, EventOf, Flight, MemoryOf, Model, Observer, Occurrence, OccurrenceKind, Reason,
+    Response, StatePolicy, WakeCause, Waking,
 };
 use crate::particle::{Mode, ParticleId, Vector};
 
@@ -73,7 +73,7 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
                 model,
                 world: &self.world,
             },
-            &mut self.memories[particle as usize],
+            self.memories.make(particle),
             &mut self.commands,
         );
         let rest = model.dynamics().ground_velocity(&state.position, now);
@@ -131,7 +131,7 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
                 model: &self.model,
                 world: &self.world,
             },
-            &mut self.memories[particle as usize],
+            self.memories.make(particle),
             &mut self.commands,
         );
         self.schedule();
@@ -139,16 +139,34 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
 
     /// The policy hears of a grain for the first time.
     pub(super) fn tell_started(&mut self, particle: u32) {
-        self.model.state_policy().on_start(
-            ParticleId(particle),
-            &View {
-                model: &self.model,
-                world: &self.world,
-            },
-            &mut self.memories[particle as usize],
-            &mut self.commands,
-        );
+        let (id, mut memory) = (ParticleId(particle), MemoryOf::<M, D>::default());
+        let near = View {
+            model: &self.model,
+            world: &self.world,
+        };
+        let policy = self.model.state_policy();
+        policy.on_start(id, &near, &mut memory, &mut self.commands);
+        if !policy.may_forget(id, &near, &memory) {
+            *self.memories.make(particle) = memory;
+        }
         self.schedule();
+    }
+
+    /// Gives back the room of what the policy may forget of sleepers.
+    pub(super) fn tidy_memories(&mut self) {
+        let policy = self.model.state_policy();
+        let near = View {
+            model: &self.model,
+            world: &self.world,
+        };
+        let void = self.memories.each().filter(|(particle, memory)| {
+            self.world.bodies[*particle as usize].mode == Mode::Frozen
+                && policy.may_forget(ParticleId(*particle), &near, memory)
+        });
+        let void: Vec<u32> = void.map(|(particle, _)| particle).collect();
+        for particle in void {
+            self.memories.clear(particle);
+        }
     }
 
     /// Files what the policy has asked for.
@@ -189,7 +207,7 @@ impl<M: Model<D>, const D: usize> Simulation<M, D> {
                 model: &self.model,
                 world: &self.world,
             },
-            &mut self.memories[particle as usize],
+            self.memories.make(particle),
             &mut self.commands,
         );
         self.schedule();

@@ -261,6 +261,20 @@ pub trait StatePolicy<const D: usize> {
         Ok(())
     }
 
+    /// Whether nothing that is asked of the policy depends on this memory any more, now
+    /// or later: that is, whether `Memory::default()` would do as well. The engine then
+    /// may forget it, and hands in the default from then on; so a heap takes less room. It
+    /// asks for grains as they start, and for sleepers now and then: when, says nothing
+    /// about the grain.
+    fn may_forget<S: Surroundings<D>>(
+        &self,
+        _id: ParticleId,
+        _near: &S,
+        _memory: &Self::Memory,
+    ) -> bool {
+        false
+    }
+
     /// Called once for each grain when the simulation starts, or when the grain
     /// is inserted.
     fn on_start<S: Surroundings<D>>(

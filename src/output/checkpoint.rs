@@ -10,7 +10,7 @@ use crate::output::folder::{RunFolder, sync_folder, write_synced};
 const MAGIC: &[u8; 8] = b"GRAINCKP";
 
 /// The layout that this version writes, and the only one that it reads.
-const FORMAT: u32 = 12;
+const FORMAT: u32 = 13;
 
 /// The version of the program, for which a checkpoint holds.
 const VERSION: &str = env!("CARGO_PKG_VERSION");

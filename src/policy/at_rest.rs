@@ -11,7 +11,7 @@ use crate::model::{
     Commands, Impact, Place, Reason, Response, SleepDecision, StatePolicy, Surroundings, WakeCause,
     WakeDecision, Waking,
 };
-use crate::particle::{ParticleId, Vector};
+use crate::particle::{Mode, ParticleId, Vector};
 use crate::policy::asleep::Asleep;
 use crate::policy::parameters::not_negative;
 use crate::policy::supports::{Check, CheckDue, Kept, SelfCheck};
@@ -167,6 +167,21 @@ impl<const D: usize, C: RestCondition<D>> StatePolicy<D> for AtRest<C> {
             Some(asleep) => asleep.check(near.particle(id).mode, near.time()),
             None => Ok(()),
         }
+    }
+
+    fn may_forget<S: Surroundings<D>>(
+        &self,
+        id: ParticleId,
+        near: &S,
+        memory: &Self::Memory,
+    ) -> bool {
+        let is_over = match (near.particle(id).mode, memory.asleep) {
+            // It may have a history.
+            (Mode::Normal, _) => false,
+            (_, Some(asleep)) => near.time() - asleep.since >= self.store_time,
+            (_, None) => true,
+        };
+        is_over && memory.supports.is_empty()
     }
 
     fn on_start<S: Surroundings<D>>(

@@ -198,6 +198,20 @@ impl<const D: usize> StatePolicy<D> for Criterion {
         )
     }
 
+    fn may_forget<S: Surroundings<D>>(
+        &self,
+        id: ParticleId,
+        near: &S,
+        memory: &CriterionMemory<D>,
+    ) -> bool {
+        each!(
+            self,
+            memory.with,
+            |policy, slot| policy.may_forget(id, near, slot),
+            true
+        )
+    }
+
     fn on_start<S: Surroundings<D>>(
         &self,
         id: ParticleId,

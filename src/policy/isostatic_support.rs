@@ -121,6 +121,15 @@ impl<const D: usize> StatePolicy<D> for IsostaticSupport {
         self.descent.check_memory(id, near, memory)
     }
 
+    fn may_forget<S: Surroundings<D>>(
+        &self,
+        id: ParticleId,
+        near: &S,
+        memory: &Remembered<D>,
+    ) -> bool {
+        self.descent.may_forget(id, near, memory)
+    }
+
     fn on_start<S: Surroundings<D>>(
         &self,
         id: ParticleId,

@@ -1,7 +1,7 @@
 use crate::model::{
     Impact, NoEvent, Reason, SleepDecision, StatePolicy, Surroundings, WakeDecision,
 };
-use crate::particle::Vector;
+use crate::particle::{ParticleId, Vector};
 
 /// Nobody falls asleep and nobody wakes: the plain inelastic hard-sphere model.
 #[derive(Clone, Copy, Debug, Default)]
@@ -30,5 +30,9 @@ impl<const D: usize> StatePolicy<D> for Never {
         _struck: &(),
     ) -> WakeDecision<D> {
         WakeDecision::Stay(Reason::new("nobody wakes", 0.0, 0.0))
+    }
+
+    fn may_forget<S: Surroundings<D>>(&self, _id: ParticleId, _near: &S, _memory: &()) -> bool {
+        true
     }
 }

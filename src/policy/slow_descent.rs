@@ -8,8 +8,8 @@ use serde::{Deserialize, Serialize};
 
 use crate::error::SetupError;
 use crate::model::{
-    Commands, Impact, Obstacle, Place, Reason, Response, SleepDecision, StatePolicy, Surroundings,
-    WakeCause, WakeDecision, Waking,
+    Commands, GravityCourse, Impact, Obstacle, Place, Reason, Response, SleepDecision, StatePolicy,
+    Surroundings, WakeCause, WakeDecision, Waking,
 };
 use crate::particle::{Particle, ParticleId, Vector};
 use crate::policy::asleep::Asleep;
@@ -101,6 +101,18 @@ impl SlowDescent {
             .unwrap_or(2.0 * self.sleep_speed / ((1.0 - self.frozen_restitution) * gravity))
     }
 
+    /// Whether what a sleeper has lost may still be given back so long after it fell
+    /// asleep, or later.
+    fn stores_after<const D: usize, S: Surroundings<D>>(&self, asleep: f64, near: &S) -> bool {
+        let store_time = match (self.store_time, near.gravity_course()) {
+            (Some(time), _) => time,
+            // Weaker gravity would store it longer.
+            (None, GravityCourse::Unknown) => f64::INFINITY,
+            (None, _) => self.store_time(near.gravity().norm_squared().sqrt()),
+        };
+        self.energy_store != EnergyStore::Off && asleep <= STORE_MARGIN * store_time
+    }
+
     fn check(&self) -> Option<Check<'_>> {
         Check::of(self.self_check.as_ref(), self.wall_supports)
     }
@@ -145,6 +157,9 @@ impl SlowDescent {
         impact.is_on_static() || (self.wall_supports && impact.is_on_wall())
     }
 }
+
+/// A bound on the length of gravity that turns, over the least of it: its rounding.
+const STORE_MARGIN: f64 = 1.0 + 1.0e-9;
 
 /// Difference of two kinetic energies, over the mass, up to which they are
 /// equal, in gd: well above what the rounding of a place makes of it, 10⁻¹⁵ or
@@ -287,6 +302,20 @@ impl<const D: usize> StatePolicy<D> for SlowDescent {
             Some(asleep) => asleep.check(near.particle(id).mode, near.time()),
             None => Ok(()),
         }
+    }
+
+    fn may_forget<S: Surroundings<D>>(
+        &self,
+        _id: ParticleId,
+        near: &S,
+        memory: &Remembered<D>,
+    ) -> bool {
+        let is_stored = match memory.rest {
+            Rest::Awake => false,
+            Rest::Decided(_) => true,
+            Rest::Asleep(asleep) => self.stores_after(near.time() - asleep.since, near),
+        };
+        !is_stored && memory.previous_speed.is_none() && memory.supports.is_empty()
     }
 
     fn on_start<S: Surroundings<D>>(

@@ -198,7 +198,8 @@ fn faults_of_memories_and_of_the_policys_events_are_seen() {
     let (mover, sleeper) = (one(&sound, Mode::Normal), one(&sound, Mode::Frozen));
 
     let mut confused = heap();
-    confused.memories.swap(mover as usize, sleeper as usize);
+    let slept = confused.memories[sleeper].clone();
+    *confused.memories.make(mover) = slept;
     seen(&confused, "it remembers");
 
     let mut overdue = heap();

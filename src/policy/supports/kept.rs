@@ -11,6 +11,11 @@ use crate::policy::supports::{Check, CheckDue, Supports};
 pub(in crate::policy) struct Kept(Option<Box<Supports>>);
 
 impl Kept {
+    /// Nothing has ever been kept.
+    pub(in crate::policy) fn is_empty(&self) -> bool {
+        self.0.is_none()
+    }
+
     /// For grains as the simulation starts, or as they are inserted: one that is frozen
     /// notes who holds it up, and asks for its first check.
     pub(in crate::policy) fn start<const D: usize, S: Surroundings<D>>(
